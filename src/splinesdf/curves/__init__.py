@@ -1,0 +1,1 @@
+"""Closed curves: polynomial pieces, the shapes they bound, and where they come from."""

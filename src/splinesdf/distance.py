@@ -1,0 +1,90 @@
+"""Exact signed distance and closest point of a `Shape`: the ground of every number here.
+
+    points ─ blocks ─→ kernels.nearest (distance, closest point) ─→ kernels.winding (side)
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from splinesdf._arrays import Floats, as_points
+from splinesdf.curves.shape import Shape
+from splinesdf.kernels.nearest import nearest, winding
+
+# Points a thread takes at a time. Fewer: the pool's overhead shows (about 50 µs a block); more:
+# the last block keeps one core busy alone, and a block's arrays leave the second-level cache.
+_BLOCK = 8192
+
+
+def signed_distance(shape: Shape, points: ArrayLike) -> Floats:
+    """Distance to the boundary of the shape, negative inside.
+
+    Parameters
+    ----------
+    shape : Shape
+    points : array_like, shape (..., 2)
+
+    Returns
+    -------
+    ndarray, shape (...,)
+        In the unit of ``points``: the global minimum over the boundary to rounding, about 1e-15
+        of the larger of distance and size. Points that are not finite give NaN. On the medial
+        axis the gradient does not exist; the distance does.
+
+    References
+    ----------
+    [Wang2014] Definition 2; negative inside, unlike its introduction.
+    """
+    array = as_points(points)
+    distance, _ = _project(shape, array.reshape(-1, 2), sign=True)
+    return distance.reshape(array.shape[:-1])
+
+
+def closest_point(shape: Shape, points: ArrayLike) -> Floats:
+    """The boundary point nearest to each point; on the medial axis one of several.
+
+    Parameters
+    ----------
+    shape : Shape
+    points : array_like, shape (..., 2)
+
+    Returns
+    -------
+    ndarray, shape (..., 2)
+        NaN where the point is not finite.
+    """
+    array = as_points(points)
+    _, closest = _project(shape, array.reshape(-1, 2), sign=False)
+    return closest.reshape(array.shape)
+
+
+def _project(shape: Shape, points: Floats, *, sign: bool) -> tuple[Floats, Floats]:
+    arclets = shape.arclets
+    local = points - arclets.origin
+    count = len(local)
+    distance, closest = np.empty(count), np.empty((count, 2))
+
+    def block(first: int) -> None:
+        part = slice(first, first + _BLOCK)
+        size = len(local[part])
+        arclet, at = np.empty(size, dtype=np.int64), np.empty(size)
+        nearest(arclets, local[part], distance[part], closest[part], arclet, at)
+        if sign:
+            number = np.empty(size, dtype=np.int64)
+            winding(arclets, local[part], distance[part], number)
+            inside = number != 0 if shape.fill == "nonzero" else number % 2 != 0
+            distance[part][inside] *= -1.0
+
+    firsts = range(0, count, _BLOCK)
+    if len(firsts) <= 1:
+        for first in firsts:
+            block(first)
+    else:
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(block, firsts))
+    closest += arclets.origin
+    return distance, closest

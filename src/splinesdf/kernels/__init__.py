@@ -1,0 +1,1 @@
+"""Compiled loops on arrays. No kernel file imports another (see CONTRIBUTING)."""
