@@ -5,19 +5,13 @@
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Floats, as_points
+from splinesdf._blocks import in_blocks
 from splinesdf.curves.shape import Shape
 from splinesdf.kernels.nearest import nearest, winding
-
-# Points a thread takes at a time. Fewer: the pool's overhead shows (about 50 µs a block); more:
-# the last block keeps one core busy alone, and a block's arrays leave the second-level cache.
-_BLOCK = 8192
 
 
 def signed_distance(shape: Shape, points: ArrayLike) -> Floats:
@@ -68,9 +62,8 @@ def _project(shape: Shape, points: Floats, *, sign: bool) -> tuple[Floats, Float
     count = len(local)
     distance, closest = np.empty(count), np.empty((count, 2))
 
-    def block(first: int) -> None:
-        part = slice(first, first + _BLOCK)
-        size = len(local[part])
+    def work(part: slice) -> None:
+        size = part.stop - part.start
         arclet, at = np.empty(size, dtype=np.int64), np.empty(size)
         nearest(arclets, local[part], distance[part], closest[part], arclet, at)
         if sign:
@@ -79,12 +72,6 @@ def _project(shape: Shape, points: Floats, *, sign: bool) -> tuple[Floats, Float
             inside = number != 0 if shape.fill == "nonzero" else number % 2 != 0
             distance[part][inside] *= -1.0
 
-    firsts = range(0, count, _BLOCK)
-    if len(firsts) <= 1:
-        for first in firsts:
-            block(first)
-    else:
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            list(pool.map(block, firsts))
+    in_blocks(count, work)
     closest += arclets.origin
     return distance, closest

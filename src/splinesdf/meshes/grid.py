@@ -1,0 +1,102 @@
+"""Grid: cells between the lines of two lists, uniform or not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.errors import InputError
+from splinesdf.meshes.mesh import Box, check_domain
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """A rectangular grid of m x n cells.
+
+    Cell (i, j) is number ``i * n + j``: between ``x[i]`` and ``x[i + 1]``, ``y[j]`` and ``y[j + 1]``.
+
+    Attributes
+    ----------
+    x, y : ndarray, shapes (m + 1,), (n + 1,)
+        Increasing grid lines.
+    """
+
+    x: Floats
+    y: Floats
+
+    @classmethod
+    def uniform(cls, domain: Box, m: int, n: int) -> Grid:
+        """Divide the domain into m x n equal cells."""
+        xmin, ymin, xmax, ymax = check_domain(domain)
+        if m < 1 or n < 1:
+            raise InputError(f"expected at least one cell each way, got {m} x {n}")
+        return cls(np.linspace(xmin, xmax, m + 1), np.linspace(ymin, ymax, n + 1))
+
+    @classmethod
+    def from_lines(cls, x: ArrayLike, y: ArrayLike) -> Grid:
+        """The grid with these lines, which must increase."""
+        lines = [np.ascontiguousarray(values, dtype=np.float64) for values in (x, y)]
+        for name, values in zip("xy", lines, strict=True):
+            increasing = values.ndim == 1 and len(values) > 1 and bool(np.all(np.diff(values) > 0))
+            if not (increasing and np.isfinite(values).all()):
+                raise InputError(f"expected increasing grid lines {name}, got {values}")
+        return cls(*lines)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Cells each way."""
+        return len(self.x) - 1, len(self.y) - 1
+
+    @property
+    def domain(self) -> Box:
+        """The box that the cells tile."""
+        return float(self.x[0]), float(self.y[0]), float(self.x[-1]), float(self.y[-1])
+
+    @cached_property
+    def is_uniform(self) -> bool:
+        """True if the cells are equal to rounding."""
+        return all(
+            bool(np.ptp(np.diff(v)) <= 1e-12 * (np.ptp(v) + np.max(np.abs(v))))
+            for v in (self.x, self.y)
+        )
+
+    @cached_property
+    def boxes(self) -> Floats:
+        """The cells, shape (m n, 4)."""
+        m, n = self.shape
+        x0, y0 = np.repeat(self.x[:-1], n), np.tile(self.y[:-1], m)
+        x1, y1 = np.repeat(self.x[1:], n), np.tile(self.y[1:], m)
+        return np.column_stack([x0, y0, x1, y1])
+
+    @property
+    def corners(self) -> Ints:
+        """Lattice corners, two units a cell, so that no vertex is the middle of a side."""
+        m, n = self.shape
+        i, j = 2 * np.repeat(np.arange(m), n), 2 * np.tile(np.arange(n), m)
+        return np.column_stack([i, j, i + 2, j + 2])
+
+    def locate(self, points: Floats) -> Ints:
+        """The cell of each point; the domain's right and upper border belong to its last cells."""
+        m, n = self.shape
+        i = np.minimum(np.searchsorted(self.x, points[:, 0], side="right") - 1, m - 1)
+        j = np.minimum(np.searchsorted(self.y, points[:, 1], side="right") - 1, n - 1)
+        xmin, ymin, xmax, ymax = self.domain
+        px, py = points[:, 0], points[:, 1]
+        inside = (px >= xmin) & (px <= xmax) & (py >= ymin) & (py <= ymax)
+        return np.where(inside, i * n + j, -1)
+
+    def halve(self) -> Grid:
+        """Every cell in four."""
+        return self.insert(np.ones(self.shape[0], dtype=bool), np.ones(self.shape[1], dtype=bool))
+
+    def insert(self, columns: Bools, rows: Bools) -> Grid:
+        """A grid line through the middle of every marked column and row."""
+        middles = [0.5 * (v[:-1] + v[1:]) for v in (self.x, self.y)]
+        return Grid(
+            np.sort(np.concatenate([self.x, middles[0][columns]])),
+            np.sort(np.concatenate([self.y, middles[1][rows]])),
+        )

@@ -1,0 +1,44 @@
+"""What every mesh answers."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from splinesdf._arrays import Floats, Ints
+from splinesdf.errors import InputError
+
+Box = tuple[float, float, float, float]
+
+
+class Mesh(Protocol):
+    """Rectangular cells that tile a domain."""
+
+    @property
+    def domain(self) -> Box:
+        """The box that the cells tile: xmin, ymin, xmax, ymax."""
+
+    @property
+    def boxes(self) -> Floats:
+        """The cells, shape (n, 4): xmin, ymin, xmax, ymax."""
+
+    @property
+    def corners(self) -> Ints:
+        """The cells on an integer lattice, shape (n, 4): equal numbers are equal points.
+
+        On the lattice a hanging vertex is the middle of the side that it hangs on, or of a half
+        of it, and so on.
+        """
+
+    def locate(self, points: Floats) -> Ints:
+        """The cell of each point, (n, 2) -> (n,); -1 outside the domain or not finite."""
+
+
+def check_domain(domain: Box) -> Box:
+    """The domain as floats, or an `InputError`."""
+    try:
+        xmin, ymin, xmax, ymax = (float(value) for value in domain)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected a domain (xmin, ymin, xmax, ymax), got {domain!r}") from error
+    if not (xmax - xmin > 0.0 and ymax - ymin > 0.0 and abs(xmax - xmin + ymax - ymin) < 1e300):
+        raise InputError(f"expected a domain with xmin < xmax and ymin < ymax, got {domain!r}")
+    return xmin, ymin, xmax, ymax
