@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from splinesdf._arrays import Floats, as_points
 from splinesdf._blocks import in_blocks
 from splinesdf.curves.shape import Shape
-from splinesdf.kernels.nearest import nearest, winding
 
 
 def signed_distance(shape: Shape, points: ArrayLike) -> Floats:
@@ -57,6 +56,8 @@ def closest_point(shape: Shape, points: ArrayLike) -> Floats:
 
 
 def _project(shape: Shape, points: Floats, *, sign: bool) -> tuple[Floats, Floats]:
+    from splinesdf.kernels.nearest import nearest, winding  # Numba loads only when it is used
+
     arclets = shape.arclets
     local = points - arclets.origin
     count = len(local)

@@ -81,13 +81,11 @@ class Grid:
 
     def locate(self, points: Floats) -> Ints:
         """The cell of each point; the domain's right and upper border belong to its last cells."""
-        m, n = self.shape
-        i = np.minimum(np.searchsorted(self.x, points[:, 0], side="right") - 1, m - 1)
-        j = np.minimum(np.searchsorted(self.y, points[:, 1], side="right") - 1, n - 1)
-        xmin, ymin, xmax, ymax = self.domain
-        px, py = points[:, 0], points[:, 1]
-        inside = (px >= xmin) & (px <= xmax) & (py >= ymin) & (py <= ymax)
-        return np.where(inside, i * n + j, -1)
+        from splinesdf.kernels.locate import locate_grid  # Numba loads only when it is used
+
+        cells = np.empty(len(points), dtype=np.int64)
+        locate_grid(self.x, self.y, points, cells)
+        return cells
 
     def halve(self) -> Grid:
         """Every cell in four."""

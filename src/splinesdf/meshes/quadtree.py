@@ -91,41 +91,30 @@ class Quadtree:
 
     def locate(self, points: Floats) -> Ints:
         """The cell of each point; the domain's right and upper border belong to its last cells."""
-        xmin, ymin, xmax, ymax = self.domain
-        px, py = points[:, 0], points[:, 1]
-        inside = (px >= xmin) & (px <= xmax) & (py >= ymin) & (py <= ymax)
-        size = 2**self.depth
-        most = np.array(self.shape) * size - 1
-        spans = np.array([xmax - xmin, ymax - ymin])
-        scaled = np.where(inside[:, None], (points - [xmin, ymin]) / spans * (most + 1), 0.0)
-        lattice = np.minimum(scaled.astype(np.int64), most)
-        return np.where(inside, self.cell_of[self._descend(self.depth, lattice, stop=True)], -1)
+        from splinesdf.kernels.locate import locate_tree  # Numba loads only when it is used
+
+        cells = np.empty(len(points), dtype=np.int64)
+        domain, shape = np.array(self.domain), np.array(self.shape)
+        locate_tree(domain, shape, self.child, self.cell_of, points, cells)
+        return cells
 
     def find(self, level: int, index: Ints) -> Ints:
         """The node of each cell (n, 2) of a level, -1 where the tree has none."""
         limits = np.array(self.shape) * 2**level
         inside = np.all((index >= 0) & (index < limits), axis=1)
-        result = self._descend(level, np.where(inside[:, None], index, 0), stop=False)
-        return np.where(inside, result, -1)
-
-    def outside(self, level: int, index: Ints) -> Bools:
-        """True for cells of a level that lie beyond the domain."""
-        limits = np.array(self.shape) * 2**level
-        return np.any((index < 0) | (index >= limits), axis=1)
-
-    def _descend(self, level: int, index: Ints, *, stop: bool) -> Ints:
-        """Walk from the roots to cells of a level; at a leaf stop there, or answer -1."""
+        index = np.where(inside[:, None], index, 0)
         top = index >> level
         node = top[:, 0] * self.shape[1] + top[:, 1]
         for k in range(level - 1, -1, -1):
             bits = (index >> k) & 1
             below = self.child[node]
-            step = below + 2 * bits[:, 0] + bits[:, 1]
-            if stop:
-                node = np.where(below >= 0, step, node)
-            else:
-                node = np.where((below >= 0) & (node >= 0), step, -1)
-        return node
+            node = np.where((below >= 0) & (node >= 0), below + 2 * bits[:, 0] + bits[:, 1], -1)
+        return np.where(inside, node, -1)
+
+    def outside(self, level: int, index: Ints) -> Bools:
+        """True for cells of a level that lie beyond the domain."""
+        limits = np.array(self.shape) * 2**level
+        return np.any((index < 0) | (index >= limits), axis=1)
 
     def refine(self, cells: Bools) -> Quadtree:
         """Halve the 3 x 3 block around every marked cell, so that new functions cover it whole.
@@ -134,9 +123,6 @@ class Quadtree:
         nine functions over the children of a cell reach one cell of this level further.
         """
         marked = self.leaves[cells]
-        return self._split(marked)
-
-    def _split(self, marked: Ints) -> Quadtree:
         around = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)])
         wanted: list[Ints] = []
         blocks: Ints = np.empty((0, 2), dtype=np.int64)
