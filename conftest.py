@@ -1,0 +1,29 @@
+"""The README's Python blocks are tests, run in a temporary folder beside the part they read."""
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from sybil import Sybil
+from sybil.parsers.markdown import PythonCodeBlockParser
+
+_PART = Path(__file__).parent / "src" / "splinesdf" / "data" / "part.svg"
+
+
+def _enter(namespace: dict[str, Any]) -> None:
+    namespace["_came_from"] = Path.cwd()
+    namespace["_folder"] = tempfile.TemporaryDirectory()
+    shutil.copy(_PART, namespace["_folder"].name)
+    os.chdir(namespace["_folder"].name)
+
+
+def _leave(namespace: dict[str, Any]) -> None:
+    os.chdir(namespace["_came_from"])
+    namespace["_folder"].cleanup()
+
+
+pytest_collect_file = Sybil(
+    parsers=[PythonCodeBlockParser()], patterns=["README.md"], setup=_enter, teardown=_leave
+).pytest()

@@ -1,0 +1,201 @@
+"""`Contour`: a level set as a chain of conic arcs, each a rational quadratic Bézier curve."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from splinesdf._arrays import Floats
+from splinesdf.errors import InputError
+
+# A tolerance below this share of the largest coordinate asks for more than doubles hold:
+# subdivision would go on splitting rounding noise.
+_ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
+# Arcs are halved until their sag is this share of the chord (a turn of about 0.4 radians) and the
+# speeds along them differ by no more than about this factor; 16 Gauss points are then good to
+# rounding. Larger: digits are lost. Smaller: only slower.
+_QUADRATURE_SAG = 0.05
+_QUADRATURE_SPEEDS = 2.0
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """A chain of conic arcs, each starting exactly where the one before it ended.
+
+    Attributes
+    ----------
+    arcs : ndarray, shape (n, 3, 2)
+        The control points P0, P1, P2 of each arc. The arc lies inside their triangle, starts at
+        P0, ends at P2 and its tangents there pass through P1.
+    weights : ndarray, shape (n,)
+        The weight of P1, positive; P0 and P2 have the weight 1. Below 1 the arc is part of
+        an ellipse, at 1 of a parabola (or a straight line), above 1 of a hyperbola.
+    closed : bool
+        The last arc ends exactly where the first one starts.
+    distance : float
+        The level: which distance to the shape the contour stands for.
+    y_down : bool
+        The source's y axis points down (SVG). The coordinates are as in the source.
+    """
+
+    arcs: Floats
+    weights: Floats
+    closed: bool = True
+    distance: float = 0.0
+    y_down: bool = False
+
+    def __post_init__(self) -> None:
+        if self.arcs.ndim != 3 or self.arcs.shape[1:] != (3, 2) or len(self.arcs) == 0:
+            raise InputError(f"expected arcs of shape (n, 3, 2), n > 0, got {self.arcs.shape}")
+        if self.weights.shape != self.arcs.shape[:1]:
+            raise InputError(
+                f"expected one weight for each of the {len(self.arcs)} arcs, "
+                f"got weights of shape {self.weights.shape}"
+            )
+        if not (np.isfinite(self.arcs).all() and np.isfinite(self.weights).all()):
+            raise InputError("expected finite control points and weights, got NaN or infinity")
+        if not (self.weights > 0.0).all():
+            raise InputError(f"expected positive weights, got {self.weights.min():.6g}")
+        if not np.array_equal(self.arcs[:-1, 2], self.arcs[1:, 0]):
+            raise InputError("expected each arc to start exactly where the last one ended")
+        if self.closed and not np.array_equal(self.arcs[-1, 2], self.arcs[0, 0]):
+            raise InputError("expected a closed contour to end exactly where it starts")
+
+    def points(self, tolerance: float) -> Floats:
+        """The contour as a polyline that is nowhere farther from it than the tolerance.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            All vertices lie on the arcs. Closed: the last one repeats the first.
+        """
+        check_tolerance(tolerance, self.arcs)
+        arcs, weights = self.arcs, self.weights
+        while (coarse := _sag(arcs, weights) > tolerance).any():
+            arcs, weights = halve(arcs, weights, coarse)
+        return np.concatenate([arcs[:, 0], arcs[-1:, 2]])
+
+    @property
+    def length(self) -> float:
+        """The length of the curve, to rounding."""
+        _, velocities, steps = self._quadrature()
+        return float(np.sum(np.hypot(velocities[..., 0], velocities[..., 1]) * steps))
+
+    @property
+    def area(self) -> float:
+        """The signed area, to rounding: positive if x turns into y along the contour.
+
+        That is counterclockwise where y points up. An open contour is closed by its chord.
+        """
+        points, velocities, steps = self._quadrature()
+        # Taken about a point of the curve: far from the origin the products would cancel.
+        spokes = points - self.arcs[0, 0]
+        swept = spokes[..., 0] * velocities[..., 1] - spokes[..., 1] * velocities[..., 0]
+        return float(0.5 * np.sum(swept * steps))
+
+    def _quadrature(self) -> tuple[Floats, Floats, Floats]:
+        """Points, velocities and steps of a Gauss rule over all arcs."""
+        arcs, weights = self.arcs, self.weights
+        negligible = _ROUNDING * np.abs(arcs).max()
+        # 60 halvings shrink any arc below rounding: a limit for cusps, which never flatten.
+        for _ in range(60):
+            early, late, chords = (
+                np.linalg.norm(arcs[:, j] - arcs[:, i], axis=1) for i, j in ((0, 1), (1, 2), (0, 2))
+            )
+            uneven = np.maximum(early, late) > _QUADRATURE_SPEEDS * np.minimum(early, late)
+            uneven |= (weights > _QUADRATURE_SPEEDS) | (weights < 1.0 / _QUADRATURE_SPEEDS)
+            curved = _sag(arcs, weights) > _QUADRATURE_SAG * chords
+            rough = (uneven | curved) & (early + late > negligible)
+            if not rough.any():
+                break
+            arcs, weights = halve(arcs, weights, rough)
+        t = (_GAUSS_POINTS + 1.0)[:, None] / 2.0
+        first, middle, last = (arcs[:, None, k] for k in range(3))
+        w = weights[:, None, None]
+        weight = (1.0 - t) ** 2 + 2.0 * w * t * (1.0 - t) + t**2
+        # The quotient rule, with the common factors taken out.
+        velocities = (
+            2.0
+            * (
+                w * (1.0 - t) ** 2 * (middle - first)
+                + t * (1.0 - t) * (last - first)
+                + w * t**2 * (last - middle)
+            )
+            / weight**2
+        )
+        return evaluate(arcs, weights, t[:, 0]), velocities, _GAUSS_WEIGHTS / 2.0
+
+
+def evaluate(arcs: Floats, weights: Floats, parameters: Floats) -> Floats:
+    """Points of every arc at every parameter in [0, 1]: (n, 3, 2), (n,), (m,) -> (n, m, 2)."""
+    t = parameters[:, None]
+    w = weights[:, None, None]
+    first, middle, last = (1.0 - t) ** 2, 2.0 * w * t * (1.0 - t), t**2
+    sums = first * arcs[:, None, 0] + middle * arcs[:, None, 1] + last * arcs[:, None, 2]
+    return sums / (first + middle + last)
+
+
+def halve(arcs: Floats, weights: Floats, which: np.ndarray) -> tuple[Floats, Floats]:
+    """Cut the arcs named by a mask at their shoulders, exactly; the others stay, in order.
+
+    The shoulder is the point at parameter 1/2, where the tangent is parallel to the chord. Both
+    halves get the weight sqrt((1 + w) / 2).
+    """
+    w = weights[:, None]
+    into, out_of = ((arcs[:, k] + w * arcs[:, 1]) / (1.0 + w) for k in (0, 2))
+    shoulders = 0.5 * (into + out_of)
+    rows = np.repeat(np.arange(len(arcs)), np.where(which, 2, 1))
+    result, heavier = arcs[rows], weights[rows]
+    at = np.flatnonzero(which) + np.arange(np.count_nonzero(which))
+    result[at, 1], result[at, 2] = into[which], shoulders[which]
+    result[at + 1, 0], result[at + 1, 1] = shoulders[which], out_of[which]
+    heavier[at] = heavier[at + 1] = np.sqrt(0.5 * (1.0 + weights[which]))
+    return result, heavier
+
+
+def box(contours: Iterable[Contour]) -> tuple[float, float, float, float]:
+    """A box around the contours, at most a few percent too large: xmin, ymin, xmax, ymax."""
+    hulls = []
+    for contour in contours:
+        arcs, weights = contour.arcs, contour.weights
+        for _ in range(3):
+            arcs, weights = halve(arcs, weights, np.ones(len(arcs), dtype=np.bool_))
+        hulls.append(arcs.reshape(-1, 2))
+    low, high = np.min([h.min(0) for h in hulls], 0), np.max([h.max(0) for h in hulls], 0)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def mirrored(contour: Contour) -> Contour:
+    """The contour with y and its direction reversed: as the other kind of file shows it."""
+    # 0 - y, not -y: a zero stays a zero without a sign in front when it is printed.
+    arcs = np.stack([contour.arcs[..., 0], 0.0 - contour.arcs[..., 1]], axis=-1)
+    return replace(contour, arcs=arcs, y_down=not contour.y_down)
+
+
+def check_tolerance(tolerance: float, arcs: Floats) -> None:
+    """Refuse a tolerance that is not positive, or below the rounding of the coordinates."""
+    if not (np.isfinite(tolerance) and tolerance > 0.0):
+        raise InputError(f"expected a positive tolerance, got {tolerance!r}")
+    smallest = _ROUNDING * float(np.abs(arcs).max())
+    if tolerance < smallest:
+        raise InputError(
+            f"expected a tolerance of at least {smallest:.2g}, the rounding of the "
+            f"coordinates, got {tolerance:.2g}: raise it, or move the shape nearer to the origin"
+        )
+
+
+def _sag(arcs: Floats, weights: Floats) -> Floats:
+    """How far each arc leaves its chord at most: (n,).
+
+    The share of P1 in a point of the arc is at most w / (1 + w), at the shoulder.
+    """
+    chords = arcs[:, 2] - arcs[:, 0]
+    legs = arcs[:, 1] - arcs[:, 0]
+    squares = np.sum(chords * chords, axis=1)
+    along = np.sum(legs * chords, axis=1) / np.where(squares > 0.0, squares, 1.0)
+    apart = legs - np.clip(along, 0.0, 1.0)[:, None] * chords
+    result: Floats = weights / (1.0 + weights) * np.hypot(apart[:, 0], apart[:, 1])
+    return result

@@ -1,0 +1,177 @@
+"""Contours as SVG paths: lines, elliptic arcs and parabolas exactly, hyperbolas as cubics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from splinesdf._arrays import Floats
+from splinesdf.contour import Contour, box, evaluate, halve, mirrored
+
+# Within this many ulp of the largest coordinate an arc counts as a line or a parabola: the
+# difference is what the coordinates' own rounding already makes.
+_ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
+# A reader works an ellipse's center out from its ends and radii, and loses digits if the arc is
+# a small part of it or just half of it. Beyond this, in chords, cubics say the same better.
+_ELLIPSE_ERROR = 1e-9
+_LARGEST_RADIUS = 1e6
+_CHECKS = np.linspace(0.0, 1.0, 9)
+# Above 3 the cubic's end tangents would overshoot P1 and cross; from 2 on they are just halved.
+_HEAVIEST = 2.0
+_MARGIN = 0.05
+_COLORS = {-1: "#1f77b4", 0: "#000000", 1: "#d62728"}  # inside, the shape, outside
+
+
+def svg_text(contours: Sequence[Contour], tolerance: float) -> str:
+    """A drawing with one group per distance and one path per contour.
+
+    SVG's y axis points down: contours of a source whose y axis points up are mirrored, so that
+    the picture is upright.
+    """
+    drawn = [contour if contour.y_down else mirrored(contour) for contour in contours]
+    xmin, ymin, xmax, ymax = box(drawn)
+    size = max(xmax - xmin, ymax - ymin)
+    margin = _MARGIN * size
+    view = [xmin - margin, ymin - margin, xmax - xmin + 2 * margin, ymax - ymin + 2 * margin]
+    largest = max(float(np.abs(contour.arcs).max()) for contour in drawn)
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_numbers(view)}">',
+        f'<g fill="none" stroke-width="{size / 400.0:.6g}" stroke-linejoin="round">',
+    ]
+    for distance in sorted({contour.distance for contour in drawn}):
+        color = _COLORS[int(np.sign(distance))]
+        lines.append(f'<g data-distance="{float(distance)!r}" stroke="{color}">')
+        lines += [
+            f'<path d="{path_data(contour, tolerance, rounding=_ROUNDING * largest)}"/>'
+            for contour in drawn
+            if contour.distance == distance
+        ]
+        lines.append("</g>")
+    return "\n".join([*lines, "</g>", "</svg>"]) + "\n"
+
+
+def path_data(contour: Contour, tolerance: float, *, rounding: float) -> str:
+    """SVG path data of one contour, coordinates as they are."""
+    parts = [f"M{_numbers(contour.arcs[0, 0])}"]
+    parts += [
+        _arc(arc, float(weight), tolerance, rounding)
+        for arc, weight in zip(contour.arcs, contour.weights, strict=True)
+    ]
+    return " ".join([*parts, "Z"] if contour.closed else parts)
+
+
+def _arc(arc: Floats, weight: float, tolerance: float, rounding: float) -> str:
+    """The command for one arc."""
+    first, middle, last = arc
+    chord = last - first
+    squared = float(chord @ chord)
+    along = float((middle - first) @ chord) / squared if squared > 0.0 else 0.0
+    nearest = first + min(max(along, 0.0), 1.0) * chord
+    if math.dist(middle, nearest) <= rounding:
+        return f"L{_numbers(last)}"
+    if abs(weight - 1.0) * math.dist(middle, 0.5 * (first + last)) <= rounding:
+        return f"Q{_numbers(middle)} {_numbers(last)}"
+    if weight < 1.0:
+        ellipse = _ellipse(arc, weight)
+        if ellipse is not None:
+            return ellipse
+    return _cubics(arc, weight, tolerance)
+
+
+def _ellipse(arc: Floats, weight: float) -> str | None:
+    """The command A for an arc of an ellipse, or None if a reader would not find it again."""
+    first, middle, last = arc
+    chord = math.dist(first, last)
+    # The center lies on the line from P1 through the middle of the chord. With w = cos(a), the
+    # arc is center + cos(s) u + sin(s) v, |s| <= a, as for a circle: the map is affine.
+    center = middle + (0.5 * (first + last) - middle) / (1.0 - weight**2)
+    u = weight * (middle - center)
+    v = 0.5 * (last - first) / math.sqrt(1.0 - weight**2)
+    axes, radii, _ = np.linalg.svd(np.column_stack([u, v]))
+    if not 0.0 < radii[0] <= _LARGEST_RADIUS * chord or radii[1] <= 0.0:
+        return None
+    if radii[0] - radii[1] <= 4.0 * np.finfo(np.float64).eps * radii[0]:
+        radii, axes = np.full(2, radii[0]), np.eye(2)
+    degrees = math.degrees(math.atan2(axes[1, 0], axes[0, 0]))
+    legs = np.array([middle - first, last - first])
+    sweep = legs[0, 0] * legs[1, 1] - legs[0, 1] * legs[1, 0] > 0.0
+    reached = _center_as_read(first, last, radii, degrees, sweep)
+    if reached is None:
+        return None
+    points = evaluate(arc[None], np.array([weight]), _CHECKS)[0]
+    off = np.linalg.norm(_to_circle(points - reached, radii, degrees), axis=1) - 1.0
+    if np.abs(off).max() * radii[0] > _ELLIPSE_ERROR * chord:
+        return None
+    # Never more than half an ellipse, as w > 0: the first flag is 0.
+    return f"A{_numbers([*radii, degrees])} 0 {int(sweep)} {_numbers(last)}"
+
+
+def _center_as_read(
+    first: Floats, last: Floats, radii: Floats, degrees: float, sweep: bool
+) -> Floats | None:
+    """The center that a reader computes (SVG 1.1, F.6.5) for an arc of less than a half turn."""
+    half = _to_circle(0.5 * (last - first), radii, degrees)
+    squared = float(half @ half)
+    if not 0.0 < squared < 1.0:
+        return None
+    side = 1.0 if sweep else -1.0
+    away = side * math.sqrt(1.0 / squared - 1.0) * np.array([-half[1], half[0]])
+    turn = math.radians(degrees)
+    cos, sin = math.cos(turn), math.sin(turn)
+    x, y = away * radii
+    center: Floats = 0.5 * (first + last) + np.array([cos * x - sin * y, sin * x + cos * y])
+    return center
+
+
+def _to_circle(vectors: Floats, radii: Floats, degrees: float) -> Floats:
+    """Vectors in the frame in which the ellipse is the unit circle."""
+    turn = math.radians(degrees)
+    cos, sin = math.cos(turn), math.sin(turn)
+    x, y = vectors[..., 0], vectors[..., 1]
+    result: Floats = np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1) / radii
+    return result
+
+
+def _cubics(arc: Floats, weight: float, tolerance: float) -> str:
+    """Commands C for a conic arc, halved until each cubic is within the tolerance."""
+    arcs, weights = arc[None], np.array([weight])
+    # Each halving divides the error by about 64 once the arc is nearly a parabola; 40 are out
+    # of reach, a guard against a tolerance at the level of rounding.
+    for _ in range(40):
+        coarse = (weights > _HEAVIEST) | (_cubic_errors(arcs, weights) > tolerance)
+        if not coarse.any():
+            break
+        arcs, weights = halve(arcs, weights, coarse)
+    share = (4.0 * weights / (3.0 * (1.0 + weights)))[:, None]
+    early = arcs[:, 0] + share * (arcs[:, 1] - arcs[:, 0])
+    late = arcs[:, 2] + share * (arcs[:, 1] - arcs[:, 2])
+    return " ".join(
+        f"C{_numbers(a)} {_numbers(b)} {_numbers(end)}"
+        for a, b, end in zip(early, late, arcs[:, 2], strict=True)
+    )
+
+
+def _cubic_errors(arcs: Floats, weights: Floats) -> Floats:
+    """How far the cubic with an arc's ends, end tangents and shoulder is from it: (n,).
+
+    Both are written in the barycentric coordinates of P0, P1, P2. A point of the cubic is
+    compared with the arc's point on the same ray from P1, so this is never too small.
+    """
+    s = np.linspace(0.0, 1.0, 33)[1:-1]
+    share = np.minimum(4.0 * weights / (3.0 * (1.0 + weights)), 1.0)[:, None]
+    to_first = (1.0 - s) ** 3 + 3.0 * (1.0 - s) ** 2 * s * (1.0 - share)
+    to_last = s**3 + 3.0 * (1.0 - s) * s**2 * (1.0 - share)
+    cubic = np.stack([to_first, 3.0 * share * s * (1.0 - s), to_last], axis=-1)
+    t = np.sqrt(to_last) / (np.sqrt(to_first) + np.sqrt(to_last))
+    conic = np.stack([(1.0 - t) ** 2, 2.0 * weights[:, None] * t * (1.0 - t), t**2], axis=-1)
+    conic /= conic.sum(axis=-1, keepdims=True)
+    apart = np.einsum("nmk,nkd->nmd", cubic - conic, arcs)
+    result: Floats = np.linalg.norm(apart, axis=-1).max(axis=1)
+    return result
+
+
+def _numbers(values: Sequence[float] | Floats) -> str:
+    """Numbers with all their digits, the shortest that read back as the same."""
+    return " ".join(repr(float(value)).removesuffix(".0") for value in values)

@@ -1,0 +1,32 @@
+"""The paper's curves and other named shapes that several tests share."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+import splinesdf as ss
+
+FORMULAS = {
+    "gamma1": ("1/2 + 4/9*cos(t)", "1/2 + 5/11*sin(t)"),
+    "gamma2": ("1/5 + (3 + 2*cos(t))*cos(t)/10", "2/5 + (3 + 2*cos(t))*sin(t)/10"),
+    "gamma3": ("9/20 + 1/2*cos(3*t)*cos(t)", "9/20 + 1/2*cos(3*t)*sin(t)"),
+}
+UNIT = (0.0, 0.0, 1.0, 1.0)
+
+
+@cache
+def gamma(name: str) -> ss.Shape:
+    return ss.Shape.from_formula(*FORMULAS[name], name=name)
+
+
+def curve(name: str, t: np.ndarray) -> np.ndarray:
+    """The paper's curves written out once more, without the parser: (n,) -> (n, 2)."""
+    if name == "gamma1":
+        return np.stack([1 / 2 + 4 / 9 * np.cos(t), 1 / 2 + 5 / 11 * np.sin(t)], -1)
+    if name == "gamma2":
+        r = (3 + 2 * np.cos(t)) / 10
+        return np.stack([1 / 5 + r * np.cos(t), 2 / 5 + r * np.sin(t)], -1)
+    r = np.cos(3 * t) / 2
+    return np.stack([9 / 20 + r * np.cos(t), 9 / 20 + r * np.sin(t)], -1)

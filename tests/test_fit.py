@@ -1,0 +1,120 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import splinesdf as ss
+from tests import naive
+from tests.shapes import FORMULAS, UNIT, curve, gamma
+
+# Leaves of the prototype (true error, W); ours may need 1.15 times as many.
+LEAVES = {
+    ("gamma1", 1e-2): 208,
+    ("gamma1", 2e-3): 448,
+    ("gamma1", 1e-3): 664,
+    ("gamma2", 1e-2): 205,
+    ("gamma2", 2e-3): 925,
+    ("gamma2", 1e-3): 1660,
+    ("gamma3", 1e-2): 766,
+    ("gamma3", 2e-3): 5635,
+    ("gamma3", 1e-3): 13531,
+}
+
+
+@pytest.fixture(scope="module")
+def oracle() -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """A million fresh random points and their distance by the naive search, for each curve."""
+    points = np.random.default_rng(99).uniform(0, 1, (1_000_000, 2))
+    result = {}
+    for name in FORMULAS:
+        distance = naive.curve_distance(lambda t, n=name: curve(n, t), 0.0, 2 * np.pi, points)
+        result[name] = (points, distance)
+    return result
+
+
+@pytest.mark.parametrize(("name", "tolerance"), LEAVES)
+def test_tolerance_is_kept_with_few_leaves(
+    name: str, tolerance: float, oracle: dict[str, tuple[np.ndarray, np.ndarray]]
+) -> None:
+    result = ss.fit(gamma(name), tolerance=tolerance, domain=UNIT)
+    points, distance = oracle[name]
+    value = result.spline(points)
+    # The oracle is unsigned; signs are tested on their own. Away from the curve the spline's is right.
+    error = np.abs(np.abs(value) - distance)
+    near = distance < 2 * tolerance
+    signed = np.where(ss.signed_distance(gamma(name), points[near]) < 0, -1.0, 1.0)
+    error[near] = np.abs(value[near] - signed * distance[near])
+    assert error.max() <= tolerance
+    assert result.error >= 0.999 * error.max()
+    assert result.cells <= 1.15 * LEAVES[name, tolerance]
+    assert result.stopped == "reached"
+
+
+@pytest.mark.parametrize("space", ["hierarchical", "tensor", "uniform"])
+@pytest.mark.parametrize("operator", ["W", "V"])
+def test_every_space_keeps_the_tolerance(space: str, operator: str) -> None:
+    tolerance = 2e-2
+    result = ss.fit(gamma("gamma2"), tolerance=tolerance, space=space, operator=operator)
+    xmin, ymin, xmax, ymax = result.spline.domain
+    points = np.random.default_rng(1).uniform((xmin, ymin), (xmax, ymax), (100_000, 2))
+    error = np.abs(result.spline(points) - ss.signed_distance(gamma("gamma2"), points)).max()
+    assert error <= result.error <= tolerance
+    assert result.centre_error <= result.error
+    assert [step.cells for step in result.history] == sorted(s.cells for s in result.history)
+
+
+def test_band_keeps_the_tolerance_where_it_is_asked() -> None:
+    shape, band, tolerance = gamma("gamma2"), (-0.03, 0.01), 1e-5
+    result = ss.fit(shape, tolerance=tolerance, band=band, domain=UNIT)
+    points = np.random.default_rng(2).uniform(0, 1, (300_000, 2))
+    exact, value = ss.signed_distance(shape, points), result.spline(points)
+
+    def within(values: np.ndarray) -> np.ndarray:
+        return (values >= band[0]) & (values <= band[1])
+
+    counts = within(exact) | within(value)
+    assert counts.sum() > 10_000
+    assert np.abs(value - exact)[counts].max() <= tolerance
+    assert result.cells < ss.fit(shape, tolerance=1e-3, domain=UNIT).cells
+
+
+def test_stop_reasons_are_named_and_keep_the_best_fit() -> None:
+    with pytest.raises(ss.ToleranceNotReached, match="max_cells") as caught:
+        ss.fit(gamma("gamma2"), tolerance=1e-4, max_cells=500)
+    assert caught.value.result.stopped == "max_cells"
+    assert caught.value.result.error > 1e-4
+    assert np.isfinite(caught.value.result.spline((0.2, 0.4)))
+    with pytest.raises(ss.ToleranceNotReached, match="min_side"):
+        ss.fit(gamma("gamma2"), tolerance=1e-4, min_side=0.05)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf, 1e-17])
+def test_bad_tolerances_are_refused(tolerance: float) -> None:
+    with pytest.raises(ss.InputError, match="tolerance"):
+        ss.fit(gamma("gamma1"), tolerance=tolerance)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"space": "cubic"}, {"operator": "Z"}, {"domain": (1, 0, 0, 1)}, {"band": (1.0, 0.0)}],
+)
+def test_bad_options_are_refused(options: dict[str, object]) -> None:
+    with pytest.raises(ss.InputError, match="expected"):
+        ss.fit(gamma("gamma1"), tolerance=0.1, **options)
+
+
+def test_unclosed_domain_values_and_queries_of_the_spline() -> None:
+    shape = gamma("gamma1")
+    spline = ss.fit(shape, tolerance=1e-4, band=(-0.1, 0.1)).spline
+    points = np.random.default_rng(3).uniform(0.1, 0.9, (2000, 2))
+    exact = ss.signed_distance(shape, points)
+    points = points[np.abs(exact) < 0.09]
+    exact = exact[np.abs(exact) < 0.09]
+    assert np.array_equal(spline.inside(points), exact < 0) or np.abs(exact).min() < 1e-4
+    landed = spline.closest_point(points)
+    assert np.abs(ss.signed_distance(shape, landed)).max() < 3e-4  # three times the tolerance
+    normal = spline.normal(points)
+    assert np.allclose(np.linalg.norm(normal, axis=1), 1.0)
+    exact_normal = (points - ss.closest_point(shape, points)) / exact[:, None]
+    # Normals are good to the square root of the tolerance, up to a constant.
+    assert np.abs(normal - exact_normal)[np.abs(exact) > 1e-3].max() < 2 * np.sqrt(1e-4)
