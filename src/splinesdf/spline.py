@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Bools, Floats, as_points
 from splinesdf._blocks import in_blocks
+from splinesdf.contour import Contour
+from splinesdf.level_sets import contours
 from splinesdf.meshes import Box, Grid, Mesh
 from splinesdf.spaces import bspline_coefficients, tensor_ordinates
 from splinesdf.spaces.cells import frames, power_form
@@ -109,6 +111,14 @@ class SplineSDF:
     def inside(self, points: ArrayLike) -> Bools:
         """Whether the value is negative, shape (..., 2) -> (...,)."""
         return np.asarray(self(points) < 0.0)
+
+    def contours(self, level: float) -> list[Contour]:
+        """The level set ``s = level`` as chains of conic arcs, lower values on their left.
+
+        Closed and with a continuous tangent, but for those that leave the domain (``closed`` is
+        False) and where the gradient vanishes. Left and right as x turns into y.
+        """
+        return contours(self.mesh, self.ordinates, level, y_down=self.y_down)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the spline to an ``.npz`` file, whole or not at all; `splinesdf.load` reads it."""

@@ -1,0 +1,120 @@
+"""Chains: the crossings of each triangle joined by arcs, the arcs joined into contours."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.contour import Contour
+from splinesdf.errors import InputError
+from splinesdf.level_sets.arcs import conic_arcs
+from splinesdf.level_sets.crossings import Crossings, find_crossings
+from splinesdf.level_sets.quadratics import (
+    Quadratics,
+    pair,
+    triangle_quadratics,
+    whole_ellipses,
+)
+from splinesdf.meshes import Mesh
+
+# Arcs shorter than this share of the domain are left out and their ends joined. Shorter ones
+# have too few digits for a tangent to a millionth; longer ones begin to matter.
+_SHORTEST = 1e-9
+
+
+def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = False) -> list[Contour]:
+    """The level set of a spline: chains of conic arcs, the lower side on their left.
+
+    Parameters
+    ----------
+    mesh : Grid or Quadtree
+    ordinates : ndarray, shape (n_cells, 8)
+    level : float
+    y_down : bool
+        Handed on to the contours.
+
+    Returns
+    -------
+    list of Contour
+        Closed, but for those that leave the domain. Exact up to rounding: every arc is the
+        conic on which the triangle's quadratic takes the level.
+    """
+    if not np.isfinite(level):
+        raise InputError(f"expected a finite level, got {level!r}")
+    crossings = find_crossings(mesh, ordinates, level)
+    boxes = mesh.boxes[crossings.cells]
+    quadratics = triangle_quadratics(boxes, ordinates[crossings.cells], level)
+    triangle, start, end = _join(crossings, quadratics)
+
+    lonely = quadratics._replace(constant=quadratics.constant.copy())
+    lonely.constant[crossings.triangle] = np.nan
+    rows, rings = whole_ellipses(lonely, boxes)
+    position = np.concatenate([crossings.position, rings.reshape(-1, 2)])
+    corner = len(crossings.position) + np.arange(rings.size // 2).reshape(-1, 4)
+    triangle = np.concatenate([triangle, np.repeat(rows, 4)])
+    start = np.concatenate([start, corner.ravel()])
+    end = np.concatenate([end, np.roll(corner, -1, axis=1).ravel()])
+
+    xmin, ymin, xmax, ymax = mesh.domain
+    shortest = _SHORTEST * max(xmax - xmin, ymax - ymin)
+    result = []
+    for chain, closed in _chains(start, end):
+        f = quadratics.take(triangle[chain])
+        keep = ~_negligible(f, position[start[chain]], position[end[chain]], shortest)
+        if not keep.any():
+            continue
+        f, last = f.take(np.flatnonzero(keep)), position[end[chain]][keep]
+        first = np.roll(last, 1, axis=0)
+        if not closed:
+            first[0] = position[start[chain[0]]]
+        _, arcs, weights = conic_arcs(f, first, last)
+        result.append(Contour(arcs, weights, closed, float(level), y_down))
+    return result
+
+
+def _join(crossings: Crossings, quadratics: Quadratics) -> tuple[Ints, Ints, Ints]:
+    """Arcs as triangle, first and last crossing: each starts where the way leaves the low side."""
+    triangles, first, count = np.unique(crossings.triangle, return_index=True, return_counts=True)
+    simple = count == 2
+    one, other = crossings.crossing[first[simple]], crossings.crossing[first[simple] + 1]
+    leaves = crossings.leaving[first[simple]]
+    found = [(triangles[simple], np.where(leaves, one, other), np.where(leaves, other, one))]
+    for row, at, many in zip(triangles[~simple], first[~simple], count[~simple], strict=True):
+        crossing = crossings.crossing[at : at + many]
+        start, end = pair(
+            quadratics.take(np.array([row])),
+            crossings.position[crossing],
+            crossings.leaving[at : at + many],
+        )
+        found.append((np.full(len(start), row), crossing[start], crossing[end]))
+    triangle, start, end = (np.concatenate(values) for values in zip(*found, strict=True))
+    return triangle, start, end
+
+
+def _chains(start: Ints, end: Ints) -> list[tuple[Ints, bool]]:
+    """Arcs in order, chain by chain, and whether a chain comes back to its start."""
+    starting = {crossing: arc for arc, crossing in enumerate(start.tolist())}
+    following = [starting.get(crossing, -1) for crossing in end.tolist()]
+    entered = set(end.tolist())
+    openings = [arc for arc, crossing in enumerate(start.tolist()) if crossing not in entered]
+    seen = np.zeros(len(start), dtype=np.bool_)
+    result = []
+    for head in [*openings, *range(len(start))]:
+        if seen[head]:
+            continue
+        chain = []
+        arc = head
+        while arc >= 0 and not seen[arc]:
+            seen[arc] = True
+            chain.append(arc)
+            arc = following[arc]
+        result.append((np.array(chain), arc >= 0))
+    return result
+
+
+def _negligible(f: Quadratics, first: Floats, last: Floats, shortest: float) -> Bools:
+    """Arcs too short to keep: not those that go nearly once around an ellipse."""
+    chord = last - first
+    gradient = f.gradient_at(first)
+    ahead = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] >= 0.0
+    return np.asarray((np.hypot(chord[:, 0], chord[:, 1]) < shortest) & ahead)

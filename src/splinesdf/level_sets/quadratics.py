@@ -1,0 +1,156 @@
+"""The quadratic of each triangle, and which of its zero set's ends in the triangle belong together.
+
+Where a quadratic is negative (or where it is positive) consists of one or two convex parts; a
+convex part cuts a triangle in a convex region, whose boundary is one ring.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.spaces.cells import frames, power_form
+
+# An eigenvalue of the Hessian below this share of the other counts as zero (a parabola): the
+# center of such a hyperbola lies too far away to tell its branches apart, and only one is near.
+_FLAT = 1e-9
+
+
+class Quadratics(NamedTuple):
+    """f(x) = constant + gradient (x - center) + (x - center)ᵀ hessian (x - center) / 2, n of them."""
+
+    center: Floats  # (n, 2)
+    constant: Floats  # (n,)
+    gradient: Floats  # (n, 2)
+    hessian: Floats  # (n, 2, 2)
+
+    def take(self, rows: Ints) -> Quadratics:
+        """Some of them."""
+        return Quadratics(*(values[rows] for values in self))
+
+    def value_at(self, points: Floats) -> Floats:
+        """Value of each at its own point, (n, 2) -> (n,)."""
+        x = points - self.center
+        mean = self.gradient + 0.5 * np.einsum("nij,nj->ni", self.hessian, x)
+        return np.asarray(self.constant + np.sum(mean * x, axis=1))
+
+    def gradient_at(self, points: Floats) -> Floats:
+        """Gradient of each at its own point, (n, 2) -> (n, 2)."""
+        x = points - self.center
+        return np.asarray(self.gradient + np.einsum("nij,nj->ni", self.hessian, x))
+
+
+def triangle_quadratics(boxes: Floats, ordinates: Floats, level: float) -> Quadratics:
+    """s - level in the bottom, right, top and left triangle of each cell: 4 n quadratics."""
+    count = len(boxes)
+    frame, power = frames(boxes), power_form(ordinates)
+    # Which truncated powers act: (s - t)₊² in bottom and right, (s + t)₊² in right and top.
+    across = np.repeat(power[:, 6:7], 4, axis=1) * [1.0, 1.0, 0.0, 0.0]
+    along = np.repeat(power[:, 7:8], 4, axis=1) * [0.0, 1.0, 1.0, 0.0]
+    hessian = np.empty((count, 4, 2, 2))
+    hessian[..., 0, 0] = 2.0 * (power[:, 3:4] + across + along)
+    hessian[..., 1, 1] = 2.0 * (power[:, 5:6] + across + along)
+    hessian[..., 0, 1] = hessian[..., 1, 0] = power[:, 4:5] - 2.0 * across + 2.0 * along
+    inverse = frame[:, None, 2:]
+    hessian *= inverse[..., :, None] * inverse[..., None, :]
+    return Quadratics(
+        np.repeat(frame[:, :2], 4, axis=0),
+        np.repeat(power[:, 0] - level, 4),
+        np.repeat(power[:, 1:3] * frame[:, 2:], 4, axis=0),
+        hessian.reshape(-1, 2, 2),
+    )
+
+
+def pair(quadratic: Quadratics, points: Floats, leaving: Bools) -> tuple[Ints, Ints]:
+    """Which crossings of one triangle's boundary are joined by an arc of the zero set.
+
+    Parameters
+    ----------
+    quadratic : Quadratics
+        Of the one triangle.
+    points : ndarray, shape (2 k, 2)
+        The crossings, counterclockwise.
+    leaving : ndarray, shape (2 k,)
+        Alternately true and false: the boundary leaves the negative side there.
+
+    Returns
+    -------
+    tuple of ndarray, shape (k,)
+        Where the arcs start and end, as rows of ``points``. An arc starts where the boundary
+        leaves the negative side, and has that side on its left.
+    """
+    count = len(points)
+    negative, part = _convex_part(quadratic, points)
+    # Intervals of the boundary on the convex side start where that side is entered.
+    opens = np.flatnonzero(leaving != negative)
+    closes = (opens + 1) % count
+    # The middle of an interval's ends lies in the same convex part as the interval.
+    label = part(0.5 * (points[opens] + points[closes]))
+    following = np.empty(len(opens), dtype=np.int64)
+    for value in np.unique(label):
+        members = np.flatnonzero(label == value)
+        following[members] = np.roll(members, -1)
+    # Around a convex part: along an interval to where it closes, then by an arc to the next one.
+    start, end = closes, opens[following]
+    return (start, end) if negative else (end, start)
+
+
+def _convex_part(quadratic: Quadratics, points: Floats):  # type: ignore[no-untyped-def]
+    """Whether the negative side is the one with convex parts, and which part a point is in."""
+    values, axes = np.linalg.eigh(quadratic.hessian[0])
+    small, large = sorted(values, key=abs)
+
+    def whole(where: Floats) -> Ints:
+        return np.zeros(len(where), dtype=np.int64)
+
+    if small * large >= 0.0 or abs(small) <= _FLAT * abs(large):
+        return large >= 0.0, whole
+    center = quadratic.center[0] - np.linalg.solve(quadratic.hessian[0], quadratic.gradient[0])
+    negative = bool(quadratic.value_at(center[None])[0] >= 0.0)
+    axis = axes[:, 0] if negative else axes[:, 1]
+
+    def branch(where: Floats) -> Ints:
+        return np.asarray((where - center) @ axis > 0.0, dtype=np.int64)
+
+    return negative, branch
+
+
+def whole_ellipses(quadratics: Quadratics, boxes: Floats) -> tuple[Ints, Floats]:
+    """Ellipses that lie inside their triangle without crossing its boundary.
+
+    Parameters
+    ----------
+    quadratics : Quadratics
+        Of 4 n triangles, none of which has a crossing, or NaN in ``constant`` to leave one out.
+    boxes : ndarray, shape (n, 4)
+        Their cells.
+
+    Returns
+    -------
+    tuple of ndarray, shapes (k,) and (k, 4, 2)
+        The triangles, and the ends of the ellipses' axes in order, the negative side on the left.
+    """
+    hessian = quadratics.hessian
+    determinant = hessian[:, 0, 0] * hessian[:, 1, 1] - hessian[:, 0, 1] ** 2
+    rows = np.flatnonzero((determinant > 0.0) & ~np.isnan(quadratics.constant))
+    chosen = quadratics.take(rows)
+    step = np.linalg.solve(chosen.hessian, -chosen.gradient[..., None])[..., 0]
+    extreme = chosen.constant + 0.5 * np.sum(chosen.gradient * step, axis=1)
+    upward = chosen.hessian[:, 0, 0] > 0.0
+    sides = boxes[rows // 4, 2:] - boxes[rows // 4, :2]
+    s, t = (step / sides).T
+    # bottom, right, top, left
+    number = np.where(np.abs(s) > np.abs(t), np.where(s > 0.0, 1, 3), np.where(t > 0.0, 2, 0))
+    inside = (number == rows % 4) & (np.maximum(np.abs(s), np.abs(t)) < 0.5)
+    there = inside & (np.where(upward, -extreme, extreme) > 0.0)
+    rows, chosen = rows[there], chosen.take(np.flatnonzero(there))
+    center = chosen.center + step[there]
+    values, axes = np.linalg.eigh(chosen.hessian)
+    radius = np.sqrt(-2.0 * extreme[there, None] / values)
+    first, second = (radius[:, k, None] * axes[:, :, k] for k in (0, 1))
+    turn = np.sign(np.linalg.det(axes)) * np.where(upward[there], 1.0, -1.0)
+    second *= turn[:, None]
+    ring = np.stack([center + first, center + second, center - first, center - second], axis=1)
+    return rows, ring
