@@ -1,5 +1,6 @@
 """Closed curves to a compact C¹ piecewise-quadratic signed distance function."""
 
+from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import closest_point, signed_distance
 from splinesdf.errors import (
@@ -10,6 +11,25 @@ from splinesdf.errors import (
     ToleranceNotReached,
 )
 from splinesdf.fit import FitResult, fit
-from splinesdf.spline import SplineSDF
+from splinesdf.io.output import write
+from splinesdf.offset import offset
+from splinesdf.spline import SplineSDF, load
 
 __version__ = "0.1.0"
+__all__ = [
+    "Contour",
+    "FitResult",
+    "InputError",
+    "MissingExtraError",
+    "OpenContourError",
+    "Shape",
+    "SplineSDF",
+    "SplineSDFError",
+    "ToleranceNotReached",
+    "closest_point",
+    "fit",
+    "load",
+    "offset",
+    "signed_distance",
+    "write",
+]

@@ -17,7 +17,7 @@ _SAFE_FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
 
 def kernel(function: Function) -> Function:
     """Compile a loop on arrays: cached on disk, without the GIL, no Python inside."""
-    compiled = numba.njit(
-        cache=True, nogil=True, error_model="numpy", fastmath=_SAFE_FASTMATH
-    )(function)
+    compiled = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=_SAFE_FASTMATH)(
+        function
+    )
     return cast(Function, compiled)

@@ -1,6 +1,6 @@
 """Exact signed distance and closest point of a `Shape`: the ground of every number here.
 
-    points ─ blocks ─→ kernels.nearest (distance, closest point) ─→ kernels.winding (side)
+points ─ blocks ─→ kernels.nearest (distance, closest point) ─→ kernels.winding (side)
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Fit: refine a mesh until the spline is within a tolerance of the exact distance, everywhere.
 
-    start ─→ quasi-interpolate ─→ measure ─→ all cells good? ── yes ─→ measure finely ─→ reached
-               ↑                                  │ no                    │ a cell is bad
-               └──────────── refine bad cells ←───┴───────────────────────┘
+start ─→ quasi-interpolate ─→ measure ─→ all cells good? ── yes ─→ measure finely ─→ reached
+           ↑                                  │ no                    │ a cell is bad
+           └──────────── refine bad cells ←───┴───────────────────────┘
 """
 
 from __future__ import annotations
@@ -268,9 +268,7 @@ def _start_mesh(space: str, box: Box, start: tuple[int, int] | None) -> Mesh:
     raise InputError(f"expected space 'hierarchical', 'tensor' or 'uniform', got {space!r}")
 
 
-def _interpolator(
-    distance: _Counted, operator: str
-) -> Callable[[Mesh, Shape], SplineSDF]:
+def _interpolator(distance: _Counted, operator: str) -> Callable[[Mesh, Shape], SplineSDF]:
     """Quasi-interpolation that asks for no coefficient of a quadtree twice."""
     known: dict[int, tuple[Ints, Floats]] = {}
 
@@ -362,4 +360,4 @@ def _refine(mesh: Mesh, bad: Bools, space: str) -> Mesh:
     if space == "uniform":
         return mesh.halve()
     marked = bad.reshape(mesh.shape)
-    return mesh.insert(marked.any(axis=1), marked.any(axis=0))
+    return mesh.insert(np.any(marked, axis=1), np.any(marked, axis=0))

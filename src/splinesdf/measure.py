@@ -176,4 +176,5 @@ def may_meet(
     value = function(0.5 * (boxes[:, :2] + boxes[:, 2:]))
     exact = (value + reach >= low) & (value - reach <= high)
     ordinates = spline.ordinates[cells]
-    return exact | ((ordinates.max(axis=1) >= low) & (ordinates.min(axis=1) <= high))
+    near = (ordinates.max(axis=1) >= low) & (ordinates.min(axis=1) <= high)
+    return np.asarray(exact | near)

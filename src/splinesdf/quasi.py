@@ -95,7 +95,9 @@ def _grid_coefficients(function: Function, mesh: Grid, operator: str) -> Floats:
     """Coefficients of every cell and of the ring, shape (m + 2, n + 2)."""
     m, n = mesh.shape
     sides = [ghosted_sides(v) for v in (mesh.x, mesh.y)]
-    lows = [np.concatenate([v[:1] - h[:1], v]) for v, h in zip((mesh.x, mesh.y), sides, strict=True)]
+    lows = [
+        np.concatenate([v[:1] - h[:1], v]) for v, h in zip((mesh.x, mesh.y), sides, strict=True)
+    ]
     middles = [low + 0.5 * h for low, h in zip(lows, sides, strict=True)]
     centers = np.stack(np.meshgrid(*middles, indexing="ij"), axis=-1).reshape(-1, 2)
     cell_sides = np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -16,6 +16,7 @@ from splinesdf.level_sets import contours
 from splinesdf.meshes import Box, Grid, Mesh
 from splinesdf.spaces import bspline_coefficients, tensor_ordinates
 from splinesdf.spaces.cells import frames, power_form
+from splinesdf.spline_file import Archive, read_archive, write_archive
 
 # After the first step along the gradient, which an exact distance would make the last, so many
 # Newton steps bring the point onto the zero level set. Each squares what is left of the error.
@@ -122,9 +123,7 @@ class SplineSDF:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the spline to an ``.npz`` file, whole or not at all; `splinesdf.load` reads it."""
-        from splinesdf.spline_file import save
-
-        save(self, path)
+        write_archive(path, Archive(self.mesh, self.ordinates, self.name, self.y_down))
 
     @cached_property
     def _frames(self) -> Floats:
@@ -157,6 +156,11 @@ class SplineSDF:
 
         in_blocks(count, work)
         return value, gradient, hessian
+
+
+def load(path: str | os.PathLike[str]) -> SplineSDF:
+    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one."""
+    return SplineSDF(*read_archive(path))
 
 
 def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:

@@ -18,7 +18,7 @@ from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets
 
 # An arclet's control points stay within this share of its chord's length from the chord (about
-# 45 degrees of turning). Smaller: more arclets, tighter boxes, fewer Newton steps but a deeper tree.
+# 45 degrees of turning). Smaller: more arclets, tighter boxes, fewer Newton steps, a deeper tree.
 # It is a matter of speed only: no guarantee depends on it.
 _BULGE = 0.1
 # Halvings after which a piece is taken as it is. Only pieces that shrink to a point (cusps, where

@@ -148,7 +148,9 @@ def _number(value: float | str) -> float:
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(f"expected a number or formula for the range of t, got {value!r}") from error
+        raise InputError(
+            f"expected a number or formula for the range of t, got {value!r}"
+        ) from error
     if not math.isfinite(number):
         raise InputError(f"expected a finite range of t, got {number}")
     return number
@@ -191,7 +193,7 @@ def _convert(node: ast.AST, source: str, depth: int) -> _Node:
         with np.errstate(all="ignore"):
             constant = float(_value(operation, np.zeros(())))
         return _finite(constant, node, source)
-    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+    if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
         try:
             return _finite(float(node.value), node, source)
         except OverflowError:
@@ -270,7 +272,8 @@ def _jet(node: _Node, t: Floats) -> _Jet:
     if isinstance(node, _Parameter):
         return _Jet(t, np.ones_like(t), np.zeros_like(t))
     if node.name == "**":
-        return _power(*node.arguments, t)
+        base, exponent = node.arguments
+        return _power(base, exponent, t)
     arguments = [_jet(argument, t) for argument in node.arguments]
     f = arguments[0]
     if node.name in _FUNCTIONS:

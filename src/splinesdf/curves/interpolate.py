@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -60,7 +61,7 @@ _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 16, 2) / 16) / math.cos(math.pi
 _NODES[0], _NODES[-1] = 0.0, 1.0
 # Three checks between each two nodes, where an interpolant is worst.
 _CHECKS = np.concatenate(
-    [a + (b - a) * np.array([0.21, 0.5, 0.79]) for a, b in zip(_NODES, _NODES[1:], strict=False)]
+    [a + (b - a) * np.array([0.21, 0.5, 0.79]) for a, b in pairwise(_NODES)]
 )
 _SAMPLES = np.concatenate([_NODES, _CHECKS])
 
@@ -105,13 +106,13 @@ def compile_curve(curve: Curve) -> list[Floats]:
             np.concatenate(
                 [
                     np.linspace(a, b, _FIRST_INTERVALS + 1)
-                    for a, b in zip(bounds[:-1], bounds[1:], strict=True)
+                    for a, b in pairwise(bounds)
                 ]
             )
         )
         left, pieces = _refine(curve, ends, tolerance, scale)
     pieces = [pieces[i] for i in np.argsort(left[:, 0])]
-    for before, after in zip(pieces[:-1], pieces[1:], strict=True):
+    for before, after in pairwise(pieces):
         after[0] = before[-1]
     return pieces
 
@@ -165,9 +166,7 @@ def _refine(
         error = np.max(np.abs(miss), axis=(1, 2))
         good = straight | (error <= tolerance)
         done.append(intervals[good])
-        pieces += [
-            control[i, [0, -1]] if straight[i] else control[i] for i in np.flatnonzero(good)
-        ]
+        pieces += [control[i, [0, -1]] if straight[i] else control[i] for i in np.flatnonzero(good)]
         _check_progress(intervals, good, len(pieces), narrowest)
         intervals = _split(intervals[~good], error[~good], tolerance, scale)
     return np.concatenate(done), pieces
@@ -296,7 +295,8 @@ def periodic_cubic_spline(points: ArrayLike) -> list[Floats]:
     step = np.hypot(*(following - corners).T)
     slope = (following - corners) / step[:, None]
     # Equal second derivatives at point i, divided by two:
-    # m[i-1]/h[i-1] + 2 (1/h[i-1] + 1/h[i]) m[i] + m[i+1]/h[i] = 3 (slope[i-1]/h[i-1] + slope[i]/h[i])
+    # m[i-1]/h[i-1] + 2 (1/h[i-1] + 1/h[i]) m[i] + m[i+1]/h[i]
+    #     = 3 (slope[i-1]/h[i-1] + slope[i]/h[i])
     # Scaled by the mean step, so that tiny units do not overflow.
     after = np.mean(step) / step
     before = np.roll(after, 1)

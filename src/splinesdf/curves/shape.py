@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Floats, Ints, as_points
-from splinesdf.curves.arclets import Arclets, build_arclets
+from splinesdf._tables import Arclets
+from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.formula import parse_curve
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
-#from splinesdf.curves.svg_path import parse_path
+
+# from splinesdf.curves.svg_path import parse_path
 from splinesdf.errors import InputError, OpenContourError
 
 Fill = Literal["nonzero", "evenodd"]
@@ -152,7 +154,7 @@ class Shape:
     def from_points(
         cls, points: ArrayLike, *, smooth: bool = False, fill: str = "nonzero", name: str = ""
     ) -> Shape:
-        """One closed polygon, or with ``smooth=True`` the periodic C² cubic spline through its corners.
+        """One closed polygon, or with ``smooth=True`` the periodic C² cubic through its corners.
 
         Parameters
         ----------
@@ -176,9 +178,7 @@ class Shape:
         close : bool
             Close open subpaths by a straight piece, as an SVG fill does, instead of refusing them.
         """
-        return cls.from_pieces(
-            parse_path(path), fill=fill, close=close, y_down=True, name=name
-        )
+        return cls.from_pieces(parse_path(path), fill=fill, close=close, y_down=True, name=name)
 
     @property
     def piece_count(self) -> int:
@@ -279,7 +279,8 @@ def _closed_loop(
             end, start = piece[-1], following[0]
             advice = "close it, or ask for it to be closed" if last else "its pieces must join"
             raise OpenContourError(
-                f"expected closed contours; contour {number + 1} ends at ({end[0]:.6g}, {end[1]:.6g}) "
-                f"but {'starts' if last else 'goes on'} at ({start[0]:.6g}, {start[1]:.6g}): {advice}"
+                f"expected closed contours; contour {number + 1} ends at "
+                f"({end[0]:.6g}, {end[1]:.6g}) but {'starts' if last else 'goes on'} at "
+                f"({start[0]:.6g}, {start[1]:.6g}): {advice}"
             )
     return result

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from splinesdf._atomic import write_text
 from splinesdf.contour import Contour, box, check_tolerance
 from splinesdf.errors import InputError
-from splinesdf.io.atomic import write_text
 from splinesdf.io.writers import WRITERS
 
 # The default tolerance as a share of the contours' size: far below what a machine cuts or a

@@ -69,7 +69,7 @@ def locate_tree(
             cells[k] = -1
             continue
         u, v = (px - domain[0]) * scale_x, (py - domain[1]) * scale_y
-        i, j = min(int(math.floor(u)), m - 1), min(int(math.floor(v)), n - 1)
+        i, j = min(math.floor(u), m - 1), min(math.floor(v), n - 1)
         u, v = u - i, v - j
         node = i * n + j
         while child[node] >= 0:

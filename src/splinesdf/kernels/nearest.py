@@ -236,9 +236,7 @@ def _newton(
 
 
 @kernel
-def winding(
-    arclets: Arclets, points: Floats, distance: Floats, number: Ints
-) -> None:
+def winding(arclets: Arclets, points: Floats, distance: Floats, number: Ints) -> None:
     """Fill the winding number of each point, from crossings of the ray in +x.
 
     A run of arclets right of the point counts by its two end points alone. A point nearer to its

@@ -13,13 +13,14 @@ _TURN = -0.2
 # Below this sine the tangents' meeting point loses more digits than the parabola with the same
 # sag, which is off by the square of the turn.
 _STRAIGHT = 1e-8
+# A gradient below this share of the other end's, or of its change on the way, is rounding: the
+# level passes a saddle or the ridge of a fold there, where its arcs are straight.
+_STATIONARY = 1e-9
 # An ellipse is less than a full turn and each cut halves it: 5 leave no turn above 100 degrees.
 _CUTS = 5
 
 
-def conic_arcs(
-    quadratics: Quadratics, first: Floats, last: Floats
-) -> tuple[Ints, Floats, Floats]:
+def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Ints, Floats, Floats]:
     """Arcs of f = 0 from ``first`` to ``last``, f negative on the left.
 
     Parameters
@@ -45,7 +46,8 @@ def conic_arcs(
         at = _shoulders(f.take(np.flatnonzero(bad)), first[bad], last[bad])
         copies = np.where(bad, 2, 1)
         early = (np.cumsum(copies) - copies)[bad]
-        rows, first, last = (np.repeat(v, copies, axis=0) for v in (rows, first, last))
+        rows = np.repeat(rows, copies)
+        first, last = np.repeat(first, copies, axis=0), np.repeat(last, copies, axis=0)
         last[early], first[early + 1] = at, at
     else:
         middle, weight, _ = _middles(quadratics.take(rows), first, last)
@@ -55,11 +57,14 @@ def conic_arcs(
 def _middles(f: Quadratics, first: Floats, last: Floats) -> tuple[Floats, Floats, Bools]:
     """P1 and its weight, and which arcs turn too far to have one (they get a straight line)."""
     chord = last - first
-    start, end = _ahead(f.gradient_at(first)), _ahead(f.gradient_at(last))
+    slopes = f.gradient_at(first), f.gradient_at(last)
+    start, end = (_ahead(slope) for slope in slopes)
+    steep = np.linalg.norm([*slopes, slopes[1] - slopes[0]], axis=-1)
+    fold = steep[:2].min(axis=0) <= _STATIONARY * steep.max(axis=0)
     cosine = np.sum(start * end, axis=1)
     sine = _cross(start, end)
     forward = (np.sum(chord * start, axis=1) > 0.0) & (np.sum(chord * end, axis=1) > 0.0)
-    straight = (np.abs(sine) <= _STRAIGHT) & (cosine > 0.0) & forward
+    straight = (np.abs(sine) <= _STRAIGHT) & (cosine > 0.0) & forward & ~fold
     with np.errstate(invalid="ignore", divide="ignore"):
         reach = _cross(chord, end) / sine
         back = _cross(start, chord) / sine
@@ -68,7 +73,8 @@ def _middles(f: Quadratics, first: Floats, last: Floats) -> tuple[Floats, Floats
         # in the middle of the chord; both follow from the Hessian, as f = 0 at the ends and the
         # leg is tangent.
         squared = _form(f.hessian, chord) / (4.0 * _form(f.hessian, leg))
-    bad = ~straight & ~(
+    bad = ~straight & ~fold
+    bad &= ~(
         (cosine > _TURN) & (reach > 0.0) & (back > 0.0) & (squared > 0.0) & np.isfinite(squared)
     )
     length = np.hypot(chord[:, 0], chord[:, 1])
@@ -76,7 +82,7 @@ def _middles(f: Quadratics, first: Floats, last: Floats) -> tuple[Floats, Floats
     # The parabola's sag, bowed to the right where the chord lies on the negative side.
     sag = np.sum((start - end) * right, axis=1) / np.where(length > 0.0, 8.0 * length, 1.0)
     bow = 2.0 * sag[:, None] * right / np.where(length > 0.0, length, 1.0)[:, None]
-    plain = straight | bad
+    plain = straight | fold | bad
     middle = np.where(
         plain[:, None],
         0.5 * (first + last) + np.where(straight[:, None], bow, 0.0),
@@ -104,7 +110,8 @@ def _shoulders(f: Quadratics, first: Floats, last: Floats) -> Floats:
     # If the middle is on the negative side, the arc is to the right of the chord, else left; of
     # two points there, the nearer one is on the same branch.
     side = np.where(constant < 0.0, -1.0, 1.0) * np.sign(_cross(chord, along))
-    wrong = ~np.isfinite(steps) | (steps * side[:, None] < 0.0)
+    steps[~np.isfinite(steps)] = np.inf
+    wrong = np.signbit(steps) != (side < 0.0)[:, None]
     chosen = np.argmin(np.where(wrong, np.inf, np.abs(steps)), axis=1)
     step = np.take_along_axis(steps, chosen[:, None], axis=1)
     return np.asarray(middle + np.where(np.isfinite(step), step, 0.0) * along)

@@ -156,8 +156,8 @@ def _split_sides(corners: Ints, keys: Ints) -> _Segments:
         corners[:, run].reshape(-1, 2, 2),
         np.tile([0.0, 1.0], (4 * count, 1)),
     )
-    done = []
-    while len(segments.row):
+    done: list[_Segments] = []
+    while not done or len(segments.row):
         total = segments.ends.sum(axis=1)
         # A vertex that hangs on a segment is its middle, or hangs on one of the halves then.
         middle = total >> 1

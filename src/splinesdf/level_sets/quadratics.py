@@ -6,6 +6,7 @@ convex part cuts a triangle in a convex region, whose boundary is one ring.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ _FLAT = 1e-9
 
 
 class Quadratics(NamedTuple):
-    """f(x) = constant + gradient (x - center) + (x - center)ᵀ hessian (x - center) / 2, n of them."""
+    """Functions constant + gradient x + xᵀ hessian x / 2, with x measured from the center."""
 
     center: Floats  # (n, 2)
     constant: Floats  # (n,)
@@ -43,7 +44,7 @@ class Quadratics(NamedTuple):
 
 
 def triangle_quadratics(boxes: Floats, ordinates: Floats, level: float) -> Quadratics:
-    """s - level in the bottom, right, top and left triangle of each cell: 4 n quadratics."""
+    """The spline minus the level in the bottom, right, top, left triangle of each cell."""
     count = len(boxes)
     frame, power = frames(boxes), power_form(ordinates)
     # Which truncated powers act: (s - t)₊² in bottom and right, (s + t)₊² in right and top.
@@ -82,7 +83,7 @@ def pair(quadratic: Quadratics, points: Floats, leaving: Bools) -> tuple[Ints, I
         leaves the negative side, and has that side on its left.
     """
     count = len(points)
-    negative, part = _convex_part(quadratic, points)
+    negative, part = _convex_part(quadratic)
     # Intervals of the boundary on the convex side start where that side is entered.
     opens = np.flatnonzero(leaving != negative)
     closes = (opens + 1) % count
@@ -97,7 +98,7 @@ def pair(quadratic: Quadratics, points: Floats, leaving: Bools) -> tuple[Ints, I
     return (start, end) if negative else (end, start)
 
 
-def _convex_part(quadratic: Quadratics, points: Floats):  # type: ignore[no-untyped-def]
+def _convex_part(quadratic: Quadratics) -> tuple[bool, Callable[[Floats], Ints]]:
     """Whether the negative side is the one with convex parts, and which part a point is in."""
     values, axes = np.linalg.eigh(quadratic.hessian[0])
     small, large = sorted(values, key=abs)
@@ -106,7 +107,7 @@ def _convex_part(quadratic: Quadratics, points: Floats):  # type: ignore[no-unty
         return np.zeros(len(where), dtype=np.int64)
 
     if small * large >= 0.0 or abs(small) <= _FLAT * abs(large):
-        return large >= 0.0, whole
+        return bool(large >= 0.0), whole
     center = quadratic.center[0] - np.linalg.solve(quadratic.hessian[0], quadratic.gradient[0])
     negative = bool(quadratic.value_at(center[None])[0] >= 0.0)
     axis = axes[:, 0] if negative else axes[:, 1]
@@ -134,7 +135,9 @@ def whole_ellipses(quadratics: Quadratics, boxes: Floats) -> tuple[Ints, Floats]
     """
     hessian = quadratics.hessian
     determinant = hessian[:, 0, 0] * hessian[:, 1, 1] - hessian[:, 0, 1] ** 2
-    rows = np.flatnonzero((determinant > 0.0) & ~np.isnan(quadratics.constant))
+    # Flatter ones count as parabolas, and rounding can make their Hessian exactly singular.
+    curved = determinant > _FLAT * np.trace(hessian, axis1=1, axis2=2) ** 2
+    rows = np.flatnonzero(curved & ~np.isnan(quadratics.constant))
     chosen = quadratics.take(rows)
     step = np.linalg.solve(chosen.hessian, -chosen.gradient[..., None])[..., 0]
     extreme = chosen.constant + 0.5 * np.sum(chosen.gradient * step, axis=1)
@@ -144,7 +147,9 @@ def whole_ellipses(quadratics: Quadratics, boxes: Floats) -> tuple[Ints, Floats]
     # bottom, right, top, left
     number = np.where(np.abs(s) > np.abs(t), np.where(s > 0.0, 1, 3), np.where(t > 0.0, 2, 0))
     inside = (number == rows % 4) & (np.maximum(np.abs(s), np.abs(t)) < 0.5)
-    there = inside & (np.where(upward, -extreme, extreme) > 0.0)
+    # The cell's center is a corner of the triangle: it must lie outside the ellipse.
+    outside = np.where(upward, chosen.constant >= 0.0, chosen.constant < 0.0)
+    there = inside & outside & (np.where(upward, -extreme, extreme) > 0.0)
     rows, chosen = rows[there], chosen.take(np.flatnonzero(there))
     center = chosen.center + step[there]
     values, axes = np.linalg.eigh(chosen.hessian)

@@ -17,7 +17,7 @@ from splinesdf.meshes.mesh import Box, check_domain
 class Grid:
     """A rectangular grid of m x n cells.
 
-    Cell (i, j) is number ``i * n + j``: between ``x[i]`` and ``x[i + 1]``, ``y[j]`` and ``y[j + 1]``.
+    Cell (i, j), number ``i * n + j``, is between ``x[i]``, ``x[i + 1]`` and ``y[j]``, ``y[j + 1]``.
 
     Attributes
     ----------

@@ -48,6 +48,39 @@ class Quadtree:
         level, child = np.zeros(m * n, dtype=np.int64), np.full(m * n, -1)
         return cls(check_domain(domain), (m, n), level, index, child)
 
+    @classmethod
+    def from_splits(cls, domain: Box, shape: tuple[int, int], split: Bools) -> Quadtree:
+        """The tree whose nodes, level after level, are split or not; the flags determine it.
+
+        Raises
+        ------
+        InputError
+            If there are too few or too many flags for the nodes that they make.
+        """
+        tree = cls.uniform(domain, *shape)
+        levels, indices, children = [], [], []
+        index, start, level = tree.index, 0, 0
+        while len(index):
+            stop = start + len(index)
+            here = split[start:stop]
+            if len(here) < len(index) or level > DEEPEST:
+                raise InputError("expected a flag for every node of the quadtree, got too few")
+            child = np.full(len(index), -1)
+            child[here] = stop + 4 * np.arange(np.count_nonzero(here))
+            levels.append(np.full(len(index), level))
+            indices.append(index)
+            children.append(child)
+            index, start, level = _quarters(index[here]), stop, level + 1
+        if start != len(split):
+            raise InputError("expected a flag for every node of the quadtree, got too many")
+        return cls(
+            tree.domain,
+            tree.shape,
+            np.concatenate(levels),
+            np.concatenate(indices),
+            np.concatenate(children),
+        )
+
     @cached_property
     def leaves(self) -> Ints:
         """Nodes that are cells: cell number -> node."""
@@ -114,7 +147,7 @@ class Quadtree:
     def outside(self, level: int, index: Ints) -> Bools:
         """True for cells of a level that lie beyond the domain."""
         limits = np.array(self.shape) * 2**level
-        return np.any((index < 0) | (index >= limits), axis=1)
+        return np.asarray(np.any((index < 0) | (index >= limits), axis=1))
 
     def refine(self, cells: Bools) -> Quadtree:
         """Halve the 3 x 3 block around every marked cell, so that new functions cover it whole.
@@ -149,8 +182,7 @@ class Quadtree:
             children.append(child)
             if not split.any():
                 break
-            quarter = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
-            index = (2 * index[split][:, None] + quarter).reshape(-1, 2)
+            index = _quarters(index[split])
         return Quadtree(
             self.domain,
             self.shape,
@@ -163,6 +195,12 @@ class Quadtree:
 def cell_keys(index: Ints) -> Ints:
     """One sortable number for each cell (n, 2) of a level, one ring outside the domain included."""
     return np.asarray((index[:, 0] + 1) * 2**31 + index[:, 1] + 1, dtype=np.int64)
+
+
+def _quarters(index: Ints) -> Ints:
+    """The children of cells, one after the other: (n, 2) -> (4 n, 2)."""
+    quarter = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
+    return np.asarray((2 * index[:, None] + quarter).reshape(-1, 2))
 
 
 def _contains(cells: Ints, index: Ints) -> Bools:

@@ -1,11 +1,11 @@
 """One cell of a spline, whatever its mesh: forms of its eight ordinates.
 
-    V2 ──E6── V3       E halfway along a side, D (not stored) halfway along a half-diagonal,
-    │ D    D │         C (not stored) at the center. The bottom triangle, for one, is
-    E7   C   E5
-    │ D    D │               C
-    V0 ──E4── V1          D01 D1
-                        V0  E4  V1
+V2 ──E6── V3       E halfway along a side, D (not stored) halfway along a half-diagonal,
+│ D    D │         C (not stored) at the center. The bottom triangle, for one, is
+E7   C   E5
+│ D    D │               C
+V0 ──E4── V1          D01 D1
+                    V0  E4  V1
 """
 
 from __future__ import annotations

@@ -79,8 +79,8 @@ def _support_refined(mesh: Quadtree, level: int, cells: Ints) -> np.ndarray:
 def _subdivide(cells: Ints, coarse_keys: Ints, coarse: Floats) -> Floats:
     parent = cells >> 1
     toward = 2 * (cells & 1) - 1
-    beside_x = parent + toward * [1, 0]
-    beside_y = parent + toward * [0, 1]
+    beside_x = parent + toward * np.array([1, 0])
+    beside_y = parent + toward * np.array([0, 1])
     at = [np.searchsorted(coarse_keys, cell_keys(p)) for p in (parent, beside_x, beside_y)]
     return 0.5 * coarse[at[0]] + 0.25 * (coarse[at[1]] + coarse[at[2]])
 

@@ -1,0 +1,59 @@
+"""`offset`: trimmed offsets of a shape as conic arcs, to a tolerance.
+
+for each distance: fit only where the distance is near it ─→ the level set of the fit
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from splinesdf.contour import Contour
+from splinesdf.curves.shape import Shape
+from splinesdf.errors import InputError
+from splinesdf.fit import fit
+
+# The fit's error is measured, not proved; this share of the tolerance is asked of it, so that the
+# hundredth that the measurement may miss does not show.
+_RESERVE = 0.99
+
+
+def offset(shape: Shape, distances: ArrayLike, *, tolerance: float) -> list[Contour]:
+    """The curves at given distances from the boundary, already trimmed.
+
+    Parameters
+    ----------
+    shape : Shape
+    distances : float or array_like, shape (n,)
+        Positive outward, negative inward, in the shape's unit; 0 is the boundary itself.
+    tolerance : float
+        How far the exact distance of a point of the result may be from the distance asked.
+
+    Returns
+    -------
+    list of Contour
+        In the order of the distances, each with its ``.distance``, closed, the side nearer to
+        the inside on its left. None for a distance at which nothing is left of the shape. Tangents
+        are continuous: a corner of the exact offset is rounded within the tolerance.
+
+    Raises
+    ------
+    ToleranceNotReached
+        If the tolerance needs more than a million cells.
+    InputError
+
+    References
+    ----------
+    [Wang2014] section 5: an offset's swallowed parts are not in a level set.
+    """
+    try:
+        wanted = np.atleast_1d(np.asarray(distances, dtype=np.float64))
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected distances as numbers, got {distances!r}") from error
+    if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
+        raise InputError(f"expected one or more finite distances, got {distances!r}")
+    result = []
+    for distance in wanted.tolist():
+        fitted = fit(shape, tolerance=_RESERVE * tolerance, band=(distance, distance))
+        result += fitted.spline.contours(distance)
+    return result
