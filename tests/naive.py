@@ -13,25 +13,23 @@ Curve = Callable[[np.ndarray], np.ndarray]
 def curve_distance(
     curve: Curve, start: float, stop: float, points: np.ndarray, samples: int = 200_000
 ) -> np.ndarray:
-    """Unsigned distance to a smooth closed curve: nearest of many samples, then golden section.
+    """Unsigned distance to a smooth closed curve: nearest of many samples, then two parabolas.
 
-    The samples on both sides of the nearest one bracket a minimum; 45 golden cuts narrow it to
-    rounding. Only where two minima tie to within the squared sample step can it take the other.
+    A parabola through the squared distances at a parameter and a sample step on both sides has
+    its lowest point within the squared step of the true foot; a narrower one about that point is
+    right to rounding. Only where two minima tie to within the squared step can it take the other.
     """
     step = (stop - start) / samples
     t = start + step * np.arange(samples)
-    _, nearest = cKDTree(curve(t)).query(points)
-    low, high = t[nearest] - step, t[nearest] + step
-    ratio = (np.sqrt(5.0) - 1.0) / 2.0
-
-    def distance(parameter: np.ndarray) -> np.ndarray:
-        return np.linalg.norm(curve(parameter) - points, axis=-1)
-
-    for _ in range(45):
-        a, b = high - ratio * (high - low), low + ratio * (high - low)
-        left = distance(a) < distance(b)
-        low, high = np.where(left, low, a), np.where(left, b, high)
-    return np.minimum(distance(0.5 * (low + high)), distance(t[nearest]))
+    nearest, sample = cKDTree(curve(t)).query(points)
+    foot = t[sample]
+    for width in (step, step / 30.0):
+        before, at, after = (
+            np.sum((curve(foot + shift) - points) ** 2, axis=-1) for shift in (-width, 0.0, width)
+        )
+        bend = np.maximum(before - 2.0 * at + after, np.finfo(float).tiny)
+        foot += np.clip(0.5 * (before - after) / bend, -1.0, 1.0) * width
+    return np.minimum(nearest, np.linalg.norm(curve(foot) - points, axis=-1))
 
 
 def winding_number(polyline: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -23,11 +23,17 @@ LEAVES = {
 
 @pytest.fixture(scope="module")
 def oracle() -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """A million fresh random points and their distance by the naive search, for each curve."""
+    """A million fresh random points and their distance by the naive search, for each curve.
+
+    With 10,000 samples the search is right to 1e-7 even where two branches tie, a ten-thousandth
+    of the smallest tolerance here.
+    """
     points = np.random.default_rng(99).uniform(0, 1, (1_000_000, 2))
     result = {}
     for name in FORMULAS:
-        distance = naive.curve_distance(lambda t, n=name: curve(n, t), 0.0, 2 * np.pi, points)
+        distance = naive.curve_distance(
+            lambda t, n=name: curve(n, t), 0.0, 2 * np.pi, points, samples=10_000
+        )
         result[name] = (points, distance)
     return result
 
@@ -75,7 +81,8 @@ def test_band_keeps_the_tolerance_where_it_is_asked() -> None:
     counts = within(exact) | within(value)
     assert counts.sum() > 10_000
     assert np.abs(value - exact)[counts].max() <= tolerance
-    assert result.cells < ss.fit(shape, tolerance=1e-3, domain=UNIT).cells
+    with pytest.raises(ss.ToleranceNotReached):  # the whole domain asks for far more
+        ss.fit(shape, tolerance=tolerance, domain=UNIT, max_cells=2 * result.cells)
 
 
 def test_stop_reasons_are_named_and_keep_the_best_fit() -> None:
