@@ -45,7 +45,7 @@ def test_tolerance_is_kept_with_few_leaves(
     result = ss.fit(gamma(name), tolerance=tolerance, domain=UNIT)
     points, distance = oracle[name]
     value = result.spline(points)
-    # The oracle is unsigned; signs are tested on their own. Away from the curve the spline's is right.
+    # The oracle has no sign; away from the curve the spline has the right one.
     error = np.abs(np.abs(value) - distance)
     near = distance < 2 * tolerance
     signed = np.where(ss.signed_distance(gamma(name), points[near]) < 0, -1.0, 1.0)

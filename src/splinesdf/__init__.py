@@ -11,6 +11,7 @@ from splinesdf.errors import (
     ToleranceNotReached,
 )
 from splinesdf.fit import FitResult, fit
+from splinesdf.io.input import read
 from splinesdf.io.output import write
 from splinesdf.offset import offset
 from splinesdf.spline import SplineSDF, load
@@ -30,6 +31,7 @@ __all__ = [
     "fit",
     "load",
     "offset",
+    "read",
     "signed_distance",
     "write",
 ]

@@ -27,7 +27,7 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
         a device or a write-protected file.
     """
     target = Path(os.path.realpath(path))
-    _check(target, path)
+    check_target(path)
     # Beside the target, because a rename is atomic only within one file system.
     temporary = target.with_name(f".{secrets.token_hex(8)}.tmp")
     try:
@@ -54,7 +54,9 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         file.write(text.encode("utf-8"))
 
 
-def _check(target: Path, path: str | os.PathLike[str]) -> None:
+def check_target(path: str | os.PathLike[str]) -> None:
+    """Raise `InputError` if a file of this name cannot be written: worth asking before long work."""
+    target = Path(os.path.realpath(path))
     name = os.fspath(path)
     if target.is_dir():
         raise InputError(f"expected a file name to write to, got the folder {name!r}")

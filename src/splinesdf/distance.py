@@ -12,6 +12,10 @@ from splinesdf._arrays import Floats, as_points
 from splinesdf._blocks import in_blocks
 from splinesdf.curves.shape import Shape
 
+# Closer to the boundary than this share of the size, the vector from the closest point is mostly
+# rounding. Larger: good directions are withheld; smaller: noise is given as a direction.
+_NO_DIRECTION = 1e-12
+
 
 def signed_distance(shape: Shape, points: ArrayLike) -> Floats:
     """Distance to the boundary of the shape, negative inside.
@@ -53,6 +57,28 @@ def closest_point(shape: Shape, points: ArrayLike) -> Floats:
     array = as_points(points)
     _, closest = _project(shape, array.reshape(-1, 2), sign=False)
     return closest.reshape(array.shape)
+
+
+def distance_and_gradient(shape: Shape, points: ArrayLike) -> tuple[Floats, Floats]:
+    """Signed distance and its gradient, the unit vector away from the inside.
+
+    Parameters
+    ----------
+    shape : Shape
+    points : array_like, shape (..., 2)
+
+    Returns
+    -------
+    distance : ndarray, shape (...,)
+    gradient : ndarray, shape (..., 2)
+        Good to about 1e-16 × size / distance; NaN within 1e-12 × size of the boundary, where no
+        digit is left. On the medial axis one of several.
+    """
+    array = as_points(points)
+    distance, closest = _project(shape, array.reshape(-1, 2), sign=True)
+    lost = np.abs(distance) <= _NO_DIRECTION * shape.size
+    gradient = (array.reshape(-1, 2) - closest) / np.where(lost, np.nan, distance)[:, None]
+    return distance.reshape(array.shape[:-1]), gradient.reshape(array.shape)
 
 
 def _project(shape: Shape, points: Floats, *, sign: bool) -> tuple[Floats, Floats]:

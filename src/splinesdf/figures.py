@@ -20,9 +20,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from splinesdf import paper, plot
-from splinesdf.contour import Contour
-from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError
+from splinesdf.offset import deviation
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,8 +32,6 @@ _OFFSET = 0.01
 _SYMBOLS = {"gamma1": "Γ₁", "gamma2": "Γ₂", "gamma3": "Γ₃"}
 # Half the side of a close-up: the offsets are then far enough apart to be told from the curve.
 _CLOSE = 0.06
-# Vertices of the offsets that are measured leave the arcs by less than the error to be seen.
-_MEASURED = 1e-6
 
 
 def figures(folder: str | os.PathLike[str]) -> list[Path]:
@@ -110,7 +107,7 @@ def _offsets(name: str, operator: str, final: paper.Round) -> Figure:
     right.set_xlim(x - _CLOSE, x + _CLOSE)
     right.set_ylim(y - _CLOSE, y + _CLOSE)
     right.get_legend().remove()
-    _title(right, f"close up; at most {plot.at_most(_off(name, contours))} off")
+    _title(right, f"close up; at most {plot.at_most(deviation(shape, contours))} off")
     return figure
 
 
@@ -122,14 +119,6 @@ def _meshes(last: dict[tuple[str, str], paper.Round]) -> Figure:
         _title(ax, _caption(name, operator, final))
         _unit_square(ax)
     return figure
-
-
-def _off(name: str, contours: list[Contour]) -> float:
-    """How far the exact distance along contours is from the one they stand for."""
-    return max(
-        float(np.abs(signed_distance(paper.shape(name), c.points(_MEASURED)) - c.distance).max())
-        for c in contours
-    )
 
 
 def _caption(name: str, operator: str, final: paper.Round) -> str:

@@ -147,17 +147,23 @@ def fit(
         max_cells=max_cells,
         min_side=min_side,
     )
-    if result.stopped != "reached":
-        advice = {
-            "max_cells": "raise max_cells or tolerance, or ask for a band",
-            "min_side": "lower min_side or raise tolerance",
-        }[result.stopped]
-        raise ToleranceNotReached(
-            f"error {result.error:.3g} > tolerance {tolerance:.3g} after {result.cells} cells "
-            f"({result.stopped}): {advice}",
-            result=result,
-        )
-    return result
+    return require_reached(result)
+
+
+def require_reached(result: FitResult) -> FitResult:
+    """The last result of `fit_steps`, or `ToleranceNotReached` if it missed its tolerance."""
+    if result.stopped == "reached":
+        return result
+    advice = {
+        "max_cells": "raise max_cells or tolerance, or ask for a band",
+        "min_side": "lower min_side or raise tolerance",
+        "refining": "take the next result",
+    }[result.stopped]
+    raise ToleranceNotReached(
+        f"error {result.error:.3g} > tolerance {result.tolerance:.3g} after {result.cells} cells "
+        f"({result.stopped}): {advice}",
+        result=result,
+    )
 
 
 def fit_steps(

@@ -16,8 +16,7 @@ from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.formula import parse_curve
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
-
-# from splinesdf.curves.svg_path import parse_path
+from splinesdf.curves.svg_path import parse_path
 from splinesdf.errors import InputError, OpenContourError
 
 Fill = Literal["nonzero", "evenodd"]

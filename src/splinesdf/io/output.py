@@ -43,11 +43,7 @@ def write(
     MissingExtraError
         For ``.dxf`` without ezdxf.
     """
-    suffix = Path(path).suffix.lower()
-    if suffix not in WRITERS:
-        raise InputError(
-            f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"
-        )
+    suffix = check_format(path)
     chains = _as_contours(contours)
     xmin, ymin, xmax, ymax = box(chains)
     size = max(xmax - xmin, ymax - ymin)
@@ -58,6 +54,16 @@ def write(
         tolerance = _DEFAULT_TOLERANCE * size
     check_tolerance(tolerance, every)
     write_text(path, WRITERS[suffix](chains, tolerance))
+
+
+def check_format(path: str | os.PathLike[str]) -> str:
+    """The extension, in lower case, or an `InputError` if no contours can be written to it."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in WRITERS:
+        raise InputError(
+            f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"
+        )
+    return suffix
 
 
 def _as_contours(contours: Iterable[Contour]) -> list[Contour]:

@@ -1,0 +1,5 @@
+"""``python -m splinesdf``."""
+
+from splinesdf.cli import main
+
+main()

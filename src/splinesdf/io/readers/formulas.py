@@ -1,0 +1,93 @@
+"""Curves given by formulas, as JSON: one ``{"x", "y", "t"}``, or several in ``"loops"``."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from splinesdf._arrays import Floats
+from splinesdf.curves.formula import parse_curve
+from splinesdf.curves.interpolate import compile_curve
+from splinesdf.curves.shape import Shape
+from splinesdf.errors import InputError
+
+_CURVE = ("x", "y", "t")
+_WHOLE = ("fill", "name")
+_FULL_TURN = [0.0, "2*pi"]
+
+
+def formula_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
+    """The curves of ``{"x": ..., "y": ..., "t": [start, stop]}`` or of a list ``"loops"`` of these.
+
+    ``"t"`` may be missing (0 to 2π); ``"fill"`` and ``"name"`` stand beside ``"x"`` or
+    ``"loops"``. An argument ``fill`` overrules the file's.
+    """
+    try:
+        content = json.loads(text, parse_int=float)  # as integers, long ones would not convert
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"expected formulas as JSON, got something else: {error}") from error
+    if not isinstance(content, dict):
+        raise InputError(
+            f'expected a JSON object such as {{"x": "cos(t)", "y": "sin(t)"}}, got {_kind(content)}'
+        )
+    rule = fill if fill is not None else _text(content, "fill", "nonzero")
+    name = _text(content, "name", stem)
+    if "loops" not in content:
+        loops = [_loop(content, _CURVE + _WHOLE)]
+    else:
+        _check_keys(content, ("loops", *_WHOLE))
+        entries = content["loops"]
+        if not isinstance(entries, list) or not entries:
+            raise InputError(f'expected "loops" to be a list of curves, got {_kind(entries)}')
+        loops = [_numbered_loop(entry, i + 1) for i, entry in enumerate(entries)]
+    return Shape.from_pieces(loops, fill=rule, close=close, name=name)
+
+
+def _numbered_loop(entry: Any, number: int) -> list[Floats]:
+    try:
+        if not isinstance(entry, dict):
+            raise InputError(f'expected an object with "x" and "y", got {_kind(entry)}')
+        return _loop(entry, _CURVE)
+    except InputError as error:
+        raise InputError(f"loop {number}: {error}") from error
+
+
+def _loop(entry: dict[str, Any], known: tuple[str, ...]) -> list[Floats]:
+    _check_keys(entry, known)
+    for key in "xy":
+        if not isinstance(entry.get(key), str):
+            got = _kind(entry[key]) if key in entry else "nothing"
+            raise InputError(f'expected a formula in quotes for "{key}", got {got}')
+    t = entry.get("t", _FULL_TURN)
+    if not isinstance(t, list) or len(t) != 2 or any(not isinstance(end, float | str) for end in t):
+        raise InputError('expected "t" to be [start, stop], each a number or a formula in quotes')
+    return compile_curve(parse_curve(entry["x"], entry["y"], (t[0], t[1])))
+
+
+def _check_keys(entry: dict[str, Any], known: tuple[str, ...]) -> None:
+    unknown = [key for key in entry if key not in known]
+    if unknown:
+        shown = ", ".join(repr(key[:30]) for key in unknown[:5])
+        raise InputError(f"expected only the keys {', '.join(known)}, got {shown}")
+
+
+def _text(content: dict[str, Any], key: str, default: str) -> str:
+    value = content.get(key, default)
+    if not isinstance(value, str):
+        raise InputError(f'expected text for "{key}", got {_kind(value)}')
+    return value
+
+
+def _kind(value: Any) -> str:
+    """What a JSON value is, in JSON's own words."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return "a number"
+    if isinstance(value, str):
+        return "text"
+    if not value:
+        return "an empty list" if isinstance(value, list) else "an empty object"
+    return "a list" if isinstance(value, list) else "an object"

@@ -1,0 +1,95 @@
+"""Affine maps as SVG writes them, and what they do to Bézier pieces."""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from splinesdf._arrays import Floats
+from splinesdf.curves.svg_path import parse_numbers
+from splinesdf.errors import InputError
+
+_TRANSFORM = re.compile(r"[\s,]*([A-Za-z]+)\s*\(([^()]*)\)")
+
+
+class Matrix(NamedTuple):
+    """The map x' = a x + c y + e, y' = b x + d y + f, as in SVG's ``matrix``."""
+
+    a: float = 1.0
+    b: float = 0.0
+    c: float = 0.0
+    d: float = 1.0
+    e: float = 0.0
+    f: float = 0.0
+
+
+IDENTITY = Matrix()
+
+
+def parse_transform(text: str) -> Matrix:
+    """A list such as ``translate(1 2) rotate(30)``."""
+    matrix = Matrix()
+    position = 0
+    rest = text.strip() if text.strip() != "none" else ""
+    while position < len(rest):
+        match = _TRANSFORM.match(rest, position)
+        if match is None:
+            raise InputError(
+                f"expected a list of transforms such as 'translate(1 2) rotate(30)', "
+                f"got {rest[position : position + 30]!r}"
+            )
+        matrix = product(matrix, _single(match[1], parse_numbers(match[2])))
+        position = match.end()
+    return matrix
+
+
+def _single(name: str, n: list[float]) -> Matrix:
+    match name, len(n):
+        case "matrix", 6:
+            return Matrix(*n)
+        case "translate", 1 | 2:
+            return Matrix(e=n[0], f=n[1] if len(n) == 2 else 0.0)
+        case "scale", 1 | 2:
+            return Matrix(a=n[0], d=n[-1])
+        case "rotate", 1 | 3:
+            cos, sin = math.cos(math.radians(n[0])), math.sin(math.radians(n[0]))
+            x, y = n[1:] or (0.0, 0.0)
+            turn = product(Matrix(e=x, f=y), Matrix(cos, sin, -sin, cos))
+            return product(turn, Matrix(e=-x, f=-y))
+        case "skewX", 1:
+            return Matrix(c=math.tan(math.radians(n[0])))
+        case "skewY", 1:
+            return Matrix(b=math.tan(math.radians(n[0])))
+    raise InputError(
+        f"expected the transform matrix, translate, scale, rotate, skewX or skewY with as many "
+        f"numbers as it takes, got {name[:20]} with {len(n)}"
+    )
+
+
+def product(outer: Matrix, inner: Matrix) -> Matrix:
+    """The map that applies ``inner`` first."""
+    a, b, c, d, e, f = outer
+    return Matrix(
+        a * inner.a + c * inner.b,
+        b * inner.a + d * inner.b,
+        a * inner.c + c * inner.d,
+        b * inner.c + d * inner.d,
+        a * inner.e + c * inner.f + e,
+        b * inner.e + d * inner.f + f,
+    )
+
+
+def mapped(loop: list[Floats], matrix: Matrix) -> list[Floats]:
+    """A loop's control points under an affine map, which maps the curve with them."""
+    if matrix == IDENTITY:
+        return loop
+    a, b, c, d, e, f = matrix
+    x, y = np.concatenate(loop).T
+    with np.errstate(all="ignore"):  # what overflows is refused when the shape is made
+        points = np.stack([a * x + c * y + e, b * x + d * y + f], axis=1)
+    ends = np.cumsum([0] + [len(piece) for piece in loop]).tolist()
+    return [points[i:j] for i, j in pairwise(ends)]
