@@ -7,8 +7,8 @@ from typing import BinaryIO
 
 import pytest
 
-from splinesdf.errors import InputError
 from splinesdf._atomic import atomic_file, write_text
+from splinesdf.errors import InputError
 
 
 def test_writes_the_bytes_and_leaves_nothing_else(tmp_path: Path) -> None:

@@ -189,7 +189,9 @@ def test_gradient_and_hessian_are_the_derivatives() -> None:
         # Central differences: h times the jump of the second derivative where they straddle one.
         assert np.max(np.abs(spline.gradient(inner)[:, axis] - difference)) < 2e-5
     hessian = spline.hessian(inner)
-    second = (spline.gradient(inner + np.array([h, 0])) - spline.gradient(inner - np.array([h, 0]))) / (2 * h)
+    second = (
+        spline.gradient(inner + np.array([h, 0])) - spline.gradient(inner - np.array([h, 0]))
+    ) / (2 * h)
     # Points within h of a triangle's border see two Hessians; they are under 1 in 1000 here.
     wrong = np.abs(hessian[:, :, 0] - second).max(axis=1) > 1e-4
     assert wrong.mean() < 1e-3

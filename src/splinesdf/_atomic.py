@@ -55,7 +55,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """Raise `InputError` if a file of this name cannot be written: worth asking before long work."""
+    """Raise `InputError` if no file of this name can be written: to be asked before long work."""
     target = Path(os.path.realpath(path))
     name = os.fspath(path)
     if target.is_dir():

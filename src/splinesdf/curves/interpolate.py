@@ -27,6 +27,12 @@ _ULPS = 4.0
 # A formula may be noisier than that (sin(100*t) loses two digits to its argument). Its own noise
 # is measured and accepted up to this share of the size; above, the formula is refused as noise.
 _MOST_NOISE = 1e-11
+# Noise is measured on pieces of the curve this long, as a share of its range. Longer: they bend;
+# shorter: the samples in them fall together.
+_SHORT = 2.0**-26
+# Noise elsewhere may be larger than at 64 places. Less: rounding is chased in vain somewhere;
+# more: digits are given away.
+_NOISE_RESERVE = 2.0
 # Fewer might overlook a feature between the samples; more would cost simple curves more pieces.
 _FIRST_INTERVALS = 4
 # An error below this share of the size shrinks like width^8, so the number of parts that reach
@@ -117,16 +123,16 @@ def _tolerance(curve: Curve) -> tuple[float, float]:
     # Irrational places, so that no sample falls on a corner at a simple fraction of the range.
     places = (np.arange(64) + 0.5 * (math.sqrt(5.0) - 1.0)) / 64.0
     width = curve.stop - curve.start
-    # So close together that the curve is straight: what bends a triple of points is rounding.
-    offsets = np.array([0.0, 1.0, 2.0]) * 2.0**-36
-    t = curve.start + width * (0.999 * places[:, None] + offsets)
+    # So short that what an interpolant misses there is rounding and nothing else.
+    t = curve.start + width * (0.999 * places[:, None] + _SHORT * _SAMPLES)
     points = _evaluate(curve, t)
     scale = float(np.max(np.abs(points)))
-    bend = np.max(np.abs(points[:, 0] - 2.0 * points[:, 1] + points[:, 2]), axis=1)
+    bulge = points - points[:, :1]
+    miss = _TO_CHECKS @ bulge[:, : _DEGREE + 1] - bulge[:, _DEGREE + 1 :]
     # One sample of 64 may sit on a corner by chance; the second largest is noise all the same.
-    noise = 0.5 * float(np.sort(bend)[-2])
+    noise = _NOISE_RESERVE * float(np.sort(np.max(np.abs(miss), axis=(1, 2)))[-2])
     ulp = float(np.finfo(np.float64).eps) * scale
-    return _ULPS * max(ulp, min(noise, _MOST_NOISE * scale)), scale
+    return max(_ULPS * ulp, min(noise, _MOST_NOISE * scale)), scale
 
 
 def _evaluate(curve: Curve, t: Floats) -> Floats:

@@ -75,6 +75,8 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
     except TypeError as error:
         raise InputError(f"expected a file's path, got {type(path).__name__}") from error
     try:
+        if os.path.isdir(file):  # noqa: PTH112 - a name with a null byte is no folder, and no error
+            raise InputError("expected a file, got a folder")
         yield file
     except InputError as error:
         name = file.name or str(file)
@@ -83,8 +85,6 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 def _text(file: Path) -> str:
     try:
-        if file.is_dir():
-            raise InputError("expected a file, got a folder")
         if file.exists() and not file.is_file():
             # Reading from a pipe or a device might never end.
             raise InputError("expected a regular file, got a pipe or a device")
