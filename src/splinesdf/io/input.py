@@ -75,7 +75,7 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
     except TypeError as error:
         raise InputError(f"expected a file's path, got {type(path).__name__}") from error
     try:
-        if os.path.isdir(file):  # noqa: PTH112 - a name with a null byte is no folder, and no error
+        if file.is_dir():
             raise InputError("expected a file, got a folder")
         yield file
     except InputError as error:
