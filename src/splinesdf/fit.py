@@ -187,7 +187,7 @@ def fit_steps(
     if not (np.isfinite(tolerance) and tolerance > _ROUNDING * largest):
         raise InputError(
             f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "
-            f"got {tolerance!r}"
+            f"got {tolerance:.4g}"
         )
     distance = _Counted(lambda points: signed_distance(shape, points))
     mesh = _start_mesh(space, box, start)

@@ -16,11 +16,17 @@ _STRAIGHT = 1e-8
 # A gradient below this share of the other end's, or of its change on the way, is rounding: the
 # level passes a saddle or the ridge of a fold there, where its arcs are straight.
 _STATIONARY = 1e-9
+# Rounding in the values moves a point near a saddle or ridge, until the gradient there is about
+# sqrt(2 rounding * curvature); so many times that it has no direction. Smaller: a direction of
+# mere rounding sends an arc astray; larger: hyperbolas very near a saddle become straight lines.
+_LOST = 8.0
 # An ellipse is less than a full turn and each cut halves it: 5 leave no turn above 100 degrees.
 _CUTS = 5
 
 
-def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Ints, Floats, Floats]:
+def conic_arcs(
+    quadratics: Quadratics, first: Floats, last: Floats, rounding: float
+) -> tuple[Ints, Floats, Floats]:
     """Arcs of f = 0 from ``first`` to ``last``, f negative on the left.
 
     Parameters
@@ -28,6 +34,8 @@ def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Int
     quadratics : Quadratics
         n of them.
     first, last : ndarray, shape (n, 2)
+    rounding : float
+        How far off values of f may be.
 
     Returns
     -------
@@ -40,27 +48,43 @@ def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Int
     rows = np.arange(len(first))
     for _ in range(_CUTS):
         f = quadratics.take(rows)
-        middle, weight, bad = _middles(f, first, last)
+        middle, weight, bad = _middles(f, first, last, rounding)
+        turning = f.take(np.flatnonzero(bad))
+        at = _shoulders(turning, first[bad], last[bad])
+        # An arc that would leave its triangle joins two crossings that rounding has put in the
+        # wrong order; they are so close together that it stays straight.
+        there = turning.contains(at)
+        bad[bad], at = there, at[there]
         if not bad.any():
             break
-        at = _shoulders(f.take(np.flatnonzero(bad)), first[bad], last[bad])
         copies = np.where(bad, 2, 1)
         early = (np.cumsum(copies) - copies)[bad]
         rows = np.repeat(rows, copies)
         first, last = np.repeat(first, copies, axis=0), np.repeat(last, copies, axis=0)
         last[early], first[early + 1] = at, at
     else:
-        middle, weight, _ = _middles(quadratics.take(rows), first, last)
+        middle, weight, _ = _middles(quadratics.take(rows), first, last, rounding)
     return rows, np.stack([first, middle, last], axis=1), weight
 
 
-def _middles(f: Quadratics, first: Floats, last: Floats) -> tuple[Floats, Floats, Bools]:
+def without_direction(f: Quadratics, gradients: Floats, rounding: float) -> Bools:
+    """Whether each gradient, taken where f = 0, is so small that rounding gave its direction."""
+    curvature = np.linalg.norm(f.hessian, axis=(1, 2))
+    return np.asarray(
+        np.hypot(gradients[:, 0], gradients[:, 1]) <= _LOST * np.sqrt(rounding * curvature)
+    )
+
+
+def _middles(
+    f: Quadratics, first: Floats, last: Floats, rounding: float
+) -> tuple[Floats, Floats, Bools]:
     """P1 and its weight, and which arcs turn too far to have one (they get a straight line)."""
     chord = last - first
     slopes = f.gradient_at(first), f.gradient_at(last)
     start, end = (_ahead(slope) for slope in slopes)
     steep = np.linalg.norm([*slopes, slopes[1] - slopes[0]], axis=-1)
-    fold = steep[:2].min(axis=0) <= _STATIONARY * steep.max(axis=0)
+    lost = [without_direction(f, slope, rounding) for slope in slopes]
+    fold = (steep[:2].min(axis=0) <= _STATIONARY * steep.max(axis=0)) | (lost[0] & lost[1])
     cosine = np.sum(start * end, axis=1)
     sine = _cross(start, end)
     forward = (np.sum(chord * start, axis=1) > 0.0) & (np.sum(chord * end, axis=1) > 0.0)
@@ -77,10 +101,13 @@ def _middles(f: Quadratics, first: Floats, last: Floats) -> tuple[Floats, Floats
     bad &= ~(
         (cosine > _TURN) & (reach > 0.0) & (back > 0.0) & (squared > 0.0) & np.isfinite(squared)
     )
+    # An arc into a saddle is straight as well; cutting it would only follow its other branch.
+    fold |= bad & (lost[0] | lost[1])
+    bad &= ~fold
     length = np.hypot(chord[:, 0], chord[:, 1])
     right = np.stack([chord[:, 1], -chord[:, 0]], axis=1)
     # The parabola's sag, bowed to the right where the chord lies on the negative side.
-    sag = np.sum((start - end) * right, axis=1) / np.where(length > 0.0, 8.0 * length, 1.0)
+    sag = 0.125 * np.sum((start - end) * right, axis=1)
     bow = 2.0 * sag[:, None] * right / np.where(length > 0.0, length, 1.0)[:, None]
     plain = straight | fold | bad
     middle = np.where(

@@ -19,9 +19,16 @@ from splinesdf.spaces.cells import frames, power_form
 _FLAT = 1e-9
 
 
+# Points this share of a cell's side beside a triangle count as in it: rounding moves a crossing
+# by up to about the root of it where the level touches a side.
+_BESIDE = 1e-6
+
+
 class Quadratics(NamedTuple):
     """Functions constant + gradient x + xᵀ hessian x / 2, with x measured from the center."""
 
+    sides: Floats  # (n, 2) of the cell
+    number: Ints  # (n,) which triangle of the cell: bottom, right, top, left
     center: Floats  # (n, 2)
     constant: Floats  # (n,)
     gradient: Floats  # (n, 2)
@@ -42,6 +49,13 @@ class Quadratics(NamedTuple):
         x = points - self.center
         return np.asarray(self.gradient + np.einsum("nij,nj->ni", self.hessian, x))
 
+    def contains(self, points: Floats) -> Bools:
+        """Whether each triangle contains its own point, (n, 2) -> (n,)."""
+        s, t = ((points - self.center) / self.sides).T
+        outward = np.choose(self.number, [-t, s, t, -s])
+        across = np.abs(np.where(self.number % 2 == 0, s, t))
+        return np.asarray((outward <= 0.5 + _BESIDE) & (outward >= across - _BESIDE))
+
 
 def triangle_quadratics(boxes: Floats, ordinates: Floats, level: float) -> Quadratics:
     """The spline minus the level in the bottom, right, top, left triangle of each cell."""
@@ -57,6 +71,8 @@ def triangle_quadratics(boxes: Floats, ordinates: Floats, level: float) -> Quadr
     inverse = frame[:, None, 2:]
     hessian *= inverse[..., :, None] * inverse[..., None, :]
     return Quadratics(
+        np.repeat(boxes[:, 2:] - boxes[:, :2], 4, axis=0),
+        np.tile(np.arange(4), count),
         np.repeat(frame[:, :2], 4, axis=0),
         np.repeat(power[:, 0] - level, 4),
         np.repeat(power[:, 1:3] * frame[:, 2:], 4, axis=0),
