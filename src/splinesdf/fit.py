@@ -184,7 +184,8 @@ def fit_steps(
         band = _check_band(band)
     box = default_domain(shape, band) if domain is None else check_domain(domain)
     largest = max(abs(value) for value in (*shape.box, *box))
-    if not (np.isfinite(tolerance) and tolerance > _ROUNDING * largest):
+    tolerance = positive_tolerance(tolerance)
+    if tolerance <= _ROUNDING * largest:
         raise InputError(
             f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "
             f"got {tolerance:.4g}"
@@ -217,7 +218,7 @@ def fit_steps(
         stopped = _verdict(mesh, bad, cells, max_cells, min_side)
         yield FitResult(
             spline=spline,
-            tolerance=float(tolerance),
+            tolerance=tolerance,
             error=error,
             centre_error=center,
             bound=None,
@@ -230,6 +231,17 @@ def fit_steps(
         if stopped != "refining":
             return
         mesh = _refine(mesh, bad, space)
+
+
+def positive_tolerance(tolerance: float) -> float:
+    """The tolerance, or an `InputError` if it is not a positive number."""
+    try:
+        number = float(tolerance)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected a tolerance as a number, got {tolerance!r}") from error
+    if not (np.isfinite(number) and number > 0.0):
+        raise InputError(f"expected a positive tolerance, got {number:g}")
+    return number
 
 
 def default_domain(shape: Shape, band: Band | None = None) -> Box:

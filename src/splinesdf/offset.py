@@ -14,7 +14,7 @@ from splinesdf.contour import Contour, evaluate
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError
-from splinesdf.fit import fit
+from splinesdf.fit import fit, positive_tolerance
 
 # The fit's error is measured, not proved; this share of the tolerance is asked of it, so that the
 # hundredth that the measurement may miss does not show.
@@ -57,9 +57,10 @@ def offset(shape: Shape, distances: ArrayLike, *, tolerance: float) -> list[Cont
         raise InputError(f"expected distances as numbers, got {distances!r}") from error
     if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
         raise InputError(f"expected one or more finite distances, got {distances!r}")
+    asked = _RESERVE * positive_tolerance(tolerance)
     result = []
     for distance in wanted.tolist():
-        fitted = fit(shape, tolerance=_RESERVE * tolerance, band=(distance, distance))
+        fitted = fit(shape, tolerance=asked, band=(distance, distance))
         result += fitted.spline.contours(distance)
     return result
 

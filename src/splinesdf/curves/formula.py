@@ -193,7 +193,12 @@ def _convert(node: ast.AST, source: str, depth: int) -> _Node:
         with np.errstate(all="ignore"):
             constant = float(_value(operation, np.zeros(())))
         return _finite(constant, node, source)
-    if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+    # True is an int as well.
+    if (
+        isinstance(node, ast.Constant)
+        and isinstance(node.value, int | float)
+        and not isinstance(node.value, bool)
+    ):
         try:
             return _finite(float(node.value), node, source)
         except OverflowError:

@@ -16,17 +16,11 @@ _STRAIGHT = 1e-8
 # A gradient below this share of the other end's, or of its change on the way, is rounding: the
 # level passes a saddle or the ridge of a fold there, where its arcs are straight.
 _STATIONARY = 1e-9
-# Rounding in the values moves a point near a saddle or ridge, until the gradient there is about
-# sqrt(2 rounding * curvature); so many times that it has no direction. Smaller: a direction of
-# mere rounding sends an arc astray; larger: hyperbolas very near a saddle become straight lines.
-_LOST = 8.0
 # An ellipse is less than a full turn and each cut halves it: 5 leave no turn above 100 degrees.
 _CUTS = 5
 
 
-def conic_arcs(
-    quadratics: Quadratics, first: Floats, last: Floats, rounding: float
-) -> tuple[Ints, Floats, Floats]:
+def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Ints, Floats, Floats]:
     """Arcs of f = 0 from ``first`` to ``last``, f negative on the left.
 
     Parameters
@@ -34,8 +28,6 @@ def conic_arcs(
     quadratics : Quadratics
         n of them.
     first, last : ndarray, shape (n, 2)
-    rounding : float
-        How far off values of f may be.
 
     Returns
     -------
@@ -48,13 +40,14 @@ def conic_arcs(
     rows = np.arange(len(first))
     for _ in range(_CUTS):
         f = quadratics.take(rows)
-        middle, weight, bad = _middles(f, first, last, rounding)
+        middle, weight, bad = _middles(f, first, last)
         turning = f.take(np.flatnonzero(bad))
-        at = _shoulders(turning, first[bad], last[bad])
+        at = shoulders(turning, first[bad], last[bad])
         # An arc that would leave its triangle joins two crossings that rounding has put in the
         # wrong order; they are so close together that it stays straight.
         there = turning.contains(at)
-        bad[bad], at = there, at[there]
+        bad[bad] = there
+        at = at[there]
         if not bad.any():
             break
         copies = np.where(bad, 2, 1)
@@ -63,28 +56,17 @@ def conic_arcs(
         first, last = np.repeat(first, copies, axis=0), np.repeat(last, copies, axis=0)
         last[early], first[early + 1] = at, at
     else:
-        middle, weight, _ = _middles(quadratics.take(rows), first, last, rounding)
+        middle, weight, _ = _middles(quadratics.take(rows), first, last)
     return rows, np.stack([first, middle, last], axis=1), weight
 
 
-def without_direction(f: Quadratics, gradients: Floats, rounding: float) -> Bools:
-    """Whether each gradient, taken where f = 0, is so small that rounding gave its direction."""
-    curvature = np.linalg.norm(f.hessian, axis=(1, 2))
-    return np.asarray(
-        np.hypot(gradients[:, 0], gradients[:, 1]) <= _LOST * np.sqrt(rounding * curvature)
-    )
-
-
-def _middles(
-    f: Quadratics, first: Floats, last: Floats, rounding: float
-) -> tuple[Floats, Floats, Bools]:
+def _middles(f: Quadratics, first: Floats, last: Floats) -> tuple[Floats, Floats, Bools]:
     """P1 and its weight, and which arcs turn too far to have one (they get a straight line)."""
     chord = last - first
     slopes = f.gradient_at(first), f.gradient_at(last)
     start, end = (_ahead(slope) for slope in slopes)
     steep = np.linalg.norm([*slopes, slopes[1] - slopes[0]], axis=-1)
-    lost = [without_direction(f, slope, rounding) for slope in slopes]
-    fold = (steep[:2].min(axis=0) <= _STATIONARY * steep.max(axis=0)) | (lost[0] & lost[1])
+    fold = steep[:2].min(axis=0) <= _STATIONARY * steep.max(axis=0)
     cosine = np.sum(start * end, axis=1)
     sine = _cross(start, end)
     forward = (np.sum(chord * start, axis=1) > 0.0) & (np.sum(chord * end, axis=1) > 0.0)
@@ -101,9 +83,6 @@ def _middles(
     bad &= ~(
         (cosine > _TURN) & (reach > 0.0) & (back > 0.0) & (squared > 0.0) & np.isfinite(squared)
     )
-    # An arc into a saddle is straight as well; cutting it would only follow its other branch.
-    fold |= bad & (lost[0] | lost[1])
-    bad &= ~fold
     length = np.hypot(chord[:, 0], chord[:, 1])
     right = np.stack([chord[:, 1], -chord[:, 0]], axis=1)
     # The parabola's sag, bowed to the right where the chord lies on the negative side.
@@ -118,7 +97,7 @@ def _middles(
     return middle, np.where(plain, 1.0, np.sqrt(np.where(plain, 1.0, squared))), bad
 
 
-def _shoulders(f: Quadratics, first: Floats, last: Floats) -> Floats:
+def shoulders(f: Quadratics, first: Floats, last: Floats) -> Floats:
     """The point of each arc farthest from its chord."""
     chord = last - first
     middle = 0.5 * (first + last)

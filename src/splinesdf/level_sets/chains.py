@@ -7,7 +7,7 @@ import numpy as np
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf.contour import Contour
 from splinesdf.errors import InputError
-from splinesdf.level_sets.arcs import conic_arcs, without_direction
+from splinesdf.level_sets.arcs import conic_arcs, shoulders
 from splinesdf.level_sets.crossings import Crossings, find_crossings
 from splinesdf.level_sets.quadratics import (
     Quadratics,
@@ -57,18 +57,17 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
 
     xmin, ymin, xmax, ymax = mesh.domain
     shortest = _SHORTEST * max(xmax - xmin, ymax - ymin)
-    rounding = float(np.finfo(np.float64).eps * (np.max(np.abs(ordinates)) + abs(level)))
     result = []
     for chain, closed in _chains(start, end):
         f = quadratics.take(triangle[chain])
-        keep = ~_negligible(f, position[start[chain]], position[end[chain]], shortest, rounding)
+        keep = ~_negligible(f, position[start[chain]], position[end[chain]], shortest)
         if not keep.any():
             continue
         f, last = f.take(np.flatnonzero(keep)), position[end[chain]][keep]
         first = np.roll(last, 1, axis=0)
         if not closed:
             first[0] = position[start[chain[0]]]
-        _, arcs, weights = conic_arcs(f, first, last, rounding)
+        _, arcs, weights = conic_arcs(f, first, last)
         result.append(Contour(arcs, weights, closed, float(level), y_down))
     return result
 
@@ -113,12 +112,15 @@ def _chains(start: Ints, end: Ints) -> list[tuple[Ints, bool]]:
     return result
 
 
-def _negligible(
-    f: Quadratics, first: Floats, last: Floats, shortest: float, rounding: float
-) -> Bools:
+def _negligible(f: Quadratics, first: Floats, last: Floats, shortest: float) -> Bools:
     """Arcs too short to keep: not those that go nearly once around an ellipse."""
     chord = last - first
+    short = np.linalg.norm(chord, axis=1) < shortest
+    f, first, last, chord = f.take(np.flatnonzero(short)), first[short], last[short], chord[short]
     gradient = f.gradient_at(first)
     ahead = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] >= 0.0
-    ahead |= without_direction(f, gradient, rounding)
-    return np.asarray((np.hypot(chord[:, 0], chord[:, 1]) < shortest) & ahead)
+    far = shoulders(f, first, last)
+    # What rounding sends backward stays near, or would leave the triangle on the way round.
+    around = (np.linalg.norm(far - first, axis=1) > shortest) & f.contains(far)
+    short[short] = ahead | ~around
+    return np.asarray(short)

@@ -36,7 +36,14 @@ class Quadratics(NamedTuple):
 
     def take(self, rows: Ints) -> Quadratics:
         """Some of them."""
-        return Quadratics(*(values[rows] for values in self))
+        return Quadratics(
+            self.sides[rows],
+            self.number[rows],
+            self.center[rows],
+            self.constant[rows],
+            self.gradient[rows],
+            self.hessian[rows],
+        )
 
     def value_at(self, points: Floats) -> Floats:
         """Value of each at its own point, (n, 2) -> (n,)."""
