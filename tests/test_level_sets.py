@@ -85,7 +85,9 @@ def test_random_splines(seed: int, coarse: bool, level: float) -> None:
         assert contour.distance == level
         if not contour.closed:
             for end in (contour.arcs[0, 0], contour.arcs[-1, 2]):
-                border = np.abs(np.array([end[0] - xmin, end[0] - xmax, end[1] - ymin, end[1] - ymax]))
+                border = np.abs(
+                    np.array([end[0] - xmin, end[0] - xmax, end[1] - ymin, end[1] - ymax])
+                )
                 assert border.min() < 1e-12
         gradient = spline.gradient(on_domain(spline, contour.arcs[:, 0]))
         tangent = contour.arcs[:, 1] - contour.arcs[:, 0]

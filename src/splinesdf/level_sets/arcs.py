@@ -20,7 +20,9 @@ _STATIONARY = 1e-9
 _CUTS = 5
 
 
-def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Ints, Floats, Floats]:
+def conic_arcs(
+    quadratics: Quadratics, first: Floats, last: Floats, shortest: float
+) -> tuple[Ints, Floats, Floats]:
     """Arcs of f = 0 from ``first`` to ``last``, f negative on the left.
 
     Parameters
@@ -28,6 +30,8 @@ def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Int
     quadratics : Quadratics
         n of them.
     first, last : ndarray, shape (n, 2)
+    shortest : float
+        What would have to be cut nearer than this to an end is straight instead.
 
     Returns
     -------
@@ -46,6 +50,9 @@ def conic_arcs(quadratics: Quadratics, first: Floats, last: Floats) -> tuple[Int
         # An arc that would leave its triangle joins two crossings that rounding has put in the
         # wrong order; they are so close together that it stays straight.
         there = turning.contains(at)
+        # Next to a saddle at the level rounding decides which way an arc turns.
+        for end in (first[bad], last[bad]):
+            there &= np.linalg.norm(at - end, axis=1) >= shortest
         bad[bad] = there
         at = at[there]
         if not bad.any():

@@ -59,15 +59,11 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
     shortest = _SHORTEST * max(xmax - xmin, ymax - ymin)
     result = []
     for chain, closed in _chains(start, end):
-        f = quadratics.take(triangle[chain])
-        keep = ~_negligible(f, position[start[chain]], position[end[chain]], shortest)
-        if not keep.any():
+        points = np.concatenate([position[start[chain[:1]]], position[end[chain]]])
+        f, points = _without_negligible(quadratics.take(triangle[chain]), points, shortest)
+        if len(points) == 0:
             continue
-        f, last = f.take(np.flatnonzero(keep)), position[end[chain]][keep]
-        first = np.roll(last, 1, axis=0)
-        if not closed:
-            first[0] = position[start[chain[0]]]
-        _, arcs, weights = conic_arcs(f, first, last)
+        _, arcs, weights = conic_arcs(f, points[:-1], points[1:], shortest)
         result.append(Contour(arcs, weights, closed, float(level), y_down))
     return result
 
@@ -110,6 +106,22 @@ def _chains(start: Ints, end: Ints) -> list[tuple[Ints, bool]]:
             arc = following[arc]
         result.append((np.array(chain), arc >= 0))
     return result
+
+
+def _without_negligible(
+    f: Quadratics, points: Floats, shortest: float
+) -> tuple[Quadratics, Floats]:
+    """What is left of a chain of n arcs and its n + 1 points; no points if nothing is."""
+    small = _negligible(f, points[:-1], points[1:], shortest)
+    while small.any():
+        if small.all():
+            return f.take(np.flatnonzero(~small)), points[:0]
+        f = f.take(np.flatnonzero(~small))
+        # The first and the last point stay: they are one, or on the border of the domain.
+        points = np.concatenate([points[:1], points[1:][~small][:-1], points[-1:]])
+        # An arc beside one that was left out may have become shorter.
+        small = _negligible(f, points[:-1], points[1:], shortest)
+    return f, points
 
 
 def _negligible(f: Quadratics, first: Floats, last: Floats, shortest: float) -> Bools:
