@@ -60,7 +60,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
     result = []
     for chain, closed in _chains(start, end):
         points = np.concatenate([position[start[chain[:1]]], position[end[chain]]])
-        f, points = _without_negligible(quadratics.take(triangle[chain]), points, shortest)
+        f, points = _without_short(quadratics.take(triangle[chain]), points, shortest)
         if len(points) == 0:
             continue
         _, arcs, weights = conic_arcs(f, points[:-1], points[1:], shortest)
@@ -108,31 +108,31 @@ def _chains(start: Ints, end: Ints) -> list[tuple[Ints, bool]]:
     return result
 
 
-def _without_negligible(
-    f: Quadratics, points: Floats, shortest: float
-) -> tuple[Quadratics, Floats]:
+def _without_short(f: Quadratics, points: Floats, shortest: float) -> tuple[Quadratics, Floats]:
     """What is left of a chain of n arcs and its n + 1 points; no points if nothing is."""
-    small = _negligible(f, points[:-1], points[1:], shortest)
-    while small.any():
-        if small.all():
-            return f.take(np.flatnonzero(~small)), points[:0]
-        f = f.take(np.flatnonzero(~small))
+    around, far = _around(f, points[:-1], points[1:], shortest)
+    f = f.take(np.repeat(np.arange(len(far)), np.where(around, 2, 1)))
+    points = np.insert(points, np.flatnonzero(around) + 1, far[around], axis=0)
+    short = np.linalg.norm(np.diff(points, axis=0), axis=1) < shortest
+    while short.any():
+        if short.all():
+            return f.take(np.flatnonzero(~short)), points[:0]
+        f = f.take(np.flatnonzero(~short))
         # The first and the last point stay: they are one, or on the border of the domain.
-        points = np.concatenate([points[:1], points[1:][~small][:-1], points[-1:]])
+        points = np.concatenate([points[:1], points[1:][~short][:-1], points[-1:]])
         # An arc beside one that was left out may have become shorter.
-        small = _negligible(f, points[:-1], points[1:], shortest)
+        short = np.linalg.norm(np.diff(points, axis=0), axis=1) < shortest
     return f, points
 
 
-def _negligible(f: Quadratics, first: Floats, last: Floats, shortest: float) -> Bools:
-    """Arcs too short to keep: not those that go nearly once around an ellipse."""
+def _around(f: Quadratics, first: Floats, last: Floats, shortest: float) -> tuple[Bools, Floats]:
+    """Arcs with a short chord that go nearly once around an ellipse, and their far ends."""
     chord = last - first
-    short = np.linalg.norm(chord, axis=1) < shortest
-    f, first, last, chord = f.take(np.flatnonzero(short)), first[short], last[short], chord[short]
     gradient = f.gradient_at(first)
-    ahead = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] >= 0.0
+    backward = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] < 0.0
     far = shoulders(f, first, last)
-    # What rounding sends backward stays near, or would leave the triangle on the way round.
-    around = (np.linalg.norm(far - first, axis=1) > shortest) & f.contains(far)
-    short[short] = ahead | ~around
-    return np.asarray(short)
+    # What rounding sends backward stays near, is no ellipse, or would leave the triangle.
+    around = backward & (np.linalg.norm(chord, axis=1) < shortest)
+    around &= np.linalg.norm(far - first, axis=1) > shortest
+    around &= (np.linalg.det(f.hessian) > 0.0) & f.contains(far)
+    return around, far
