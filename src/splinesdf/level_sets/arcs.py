@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.contour import evaluate
 from splinesdf.level_sets.quadratics import Quadratics
 
 # Arcs that turn further than about this cosine says (100 degrees) are cut: at 180 the tangents no
@@ -16,8 +17,13 @@ _STRAIGHT = 1e-8
 # A gradient below this share of the other end's, or of its change on the way, is rounding: the
 # level passes a saddle or the ridge of a fold there, where its arcs are straight.
 _STATIONARY = 1e-9
+# An arc that bows by less than this share of its chord is straight: larger ones begin to matter,
+# and along the lines of a saddle no digit of the bow is right.
+_FLAT = 1e-9
 # An ellipse is less than a full turn and each cut halves it: 5 leave no turn above 100 degrees.
 _CUTS = 5
+# Where an arc is asked whether it is in its triangle: next to its ends shows the tangents there.
+_PLACES = np.array([0.05, 0.5, 0.95])
 
 
 def conic_arcs(
@@ -51,8 +57,10 @@ def conic_arcs(
         # wrong order; they are so close together that it stays straight.
         there = turning.contains(at)
         # Next to a saddle at the level rounding decides which way an arc turns.
+        chord = last[bad] - first[bad]
         for end in (first[bad], last[bad]):
             there &= np.linalg.norm(at - end, axis=1) >= shortest
+        there &= np.abs(_cross(chord, at - first[bad])) >= _FLAT * np.sum(chord * chord, axis=1)
         bad[bad] = there
         at = at[there]
         if not bad.any():
@@ -63,8 +71,14 @@ def conic_arcs(
         first, last = np.repeat(first, copies, axis=0), np.repeat(last, copies, axis=0)
         last[early], first[early + 1] = at, at
     else:
-        middle, weight, _ = _middles(quadratics.take(rows), first, last)
-    return rows, np.stack([first, middle, last], axis=1), weight
+        f = quadratics.take(rows)
+        middle, weight, _ = _middles(f, first, last)
+    arcs = np.stack([first, middle, last], axis=1)
+    # On a plateau at the level rounding makes the conic; what leaves the triangle is straight.
+    astray = ~np.all([f.contains(at) for at in evaluate(arcs, weight, _PLACES).swapaxes(0, 1)], 0)
+    arcs[astray, 1] = 0.5 * (first + last)[astray]
+    weight[astray] = 1.0
+    return rows, arcs, weight
 
 
 def _middles(f: Quadratics, first: Floats, last: Floats) -> tuple[Floats, Floats, Bools]:
