@@ -105,6 +105,7 @@ def check_values_and_ends(spline: SplineSDF, contours: list[Contour], tolerance:
 @example(2013, "hierarchical", "few", 0.0)  # a saddle at the level, on a side
 @example(828091, "uniform", "whole", 0.25)  # an ellipse that touches a diagonal
 @example(647311, "uniform", "few", 0.0)  # a plateau at the level
+@example(931157, "uniform", "whole", 0.5)  # an ellipse through a center and a vertex
 @example(15, "hierarchical", "whole", 0.5)  # a saddle at the level inside a triangle
 def test_area_below_the_level_is_what_pixels_say(
     seed: int, space: str, draw: str, level: float

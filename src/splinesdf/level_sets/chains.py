@@ -130,9 +130,9 @@ def _around(f: Quadratics, first: Floats, last: Floats, shortest: float) -> tupl
     chord = last - first
     gradient = f.gradient_at(first)
     backward = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] < 0.0
-    far = shoulders(f, first, last)
-    # What rounding sends backward stays near, is no ellipse, or would leave the triangle.
     around = backward & (np.linalg.norm(chord, axis=1) < shortest)
+    far = shoulders(f, first, last)
+    # What rounding sends backward stays near, or would leave the triangle on the way round.
     around &= np.linalg.norm(far - first, axis=1) > shortest
-    around &= (np.linalg.det(f.hessian) > 0.0) & f.contains(far)
+    around[around] = f.take(np.flatnonzero(around)).contains_ellipse()
     return around, far

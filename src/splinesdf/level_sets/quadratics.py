@@ -17,8 +17,6 @@ from splinesdf.spaces.cells import frames, power_form
 # An eigenvalue of the Hessian below this share of the other counts as zero (a parabola): the
 # center of such a hyperbola lies too far away to tell its branches apart, and only one is near.
 _FLAT = 1e-9
-
-
 # Points this share of a cell's side beside a triangle count as in it: rounding moves a crossing
 # by up to about the root of it where the level touches a side.
 _BESIDE = 1e-6
@@ -62,6 +60,26 @@ class Quadratics(NamedTuple):
         outward = np.choose(self.number, [-t, s, t, -s])
         across = np.abs(np.where(self.number % 2 == 0, s, t))
         return np.asarray((outward <= 0.5 + _BESIDE) & (outward >= across - _BESIDE))
+
+    def contains_ellipse(self) -> Bools:
+        """Whether each triangle contains all of its zero set, and that is an ellipse: (n,)."""
+        determinant = np.linalg.det(self.hessian)
+        result = determinant > _FLAT * np.trace(self.hessian, axis1=1, axis2=2) ** 2
+        f = self.take(np.flatnonzero(result))
+        inverse = np.linalg.inv(f.hessian)
+        middle = -np.einsum("nij,nj->ni", inverse, f.gradient)
+        extreme = f.constant + 0.5 * np.sum(f.gradient * middle, axis=1)
+        outward = np.array([[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])[f.number]
+        across = outward[:, ::-1]
+        there = np.ones(len(middle), dtype=np.bool_)
+        for normal, most in ((outward, 0.5), (across - outward, 0.0), (-across - outward, 0.0)):
+            slope = normal / f.sides
+            # How far the ellipse reaches along this normal of a side of the triangle.
+            squared = -2.0 * extreme * np.einsum("ni,nij,nj->n", slope, inverse, slope)
+            reach = np.sum(slope * middle, axis=1) + np.sqrt(np.maximum(squared, 0.0))
+            there &= (squared > 0.0) & (reach <= most + _BESIDE)
+        result[result] = there
+        return np.asarray(result)
 
 
 def triangle_quadratics(boxes: Floats, ordinates: Floats, level: float) -> Quadratics:
