@@ -46,12 +46,11 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
     quadratics = triangle_quadratics(boxes, ordinates[crossings.cells], level)
     triangle, start, end = _join(crossings, quadratics)
 
-    lonely = quadratics._replace(constant=quadratics.constant.copy())
-    lonely.constant[crossings.triangle] = np.nan
-    rows, rings = whole_ellipses(lonely, boxes)
+    lonely = np.setdiff1d(np.arange(4 * len(boxes)), crossings.triangle)
+    rows, rings = whole_ellipses(quadratics.take(lonely))
     position = np.concatenate([crossings.position, rings.reshape(-1, 2)])
     corner = len(crossings.position) + np.arange(rings.size // 2).reshape(-1, 4)
-    triangle = np.concatenate([triangle, np.repeat(rows, 4)])
+    triangle = np.concatenate([triangle, np.repeat(lonely[rows], 4)])
     start = np.concatenate([start, corner.ravel()])
     end = np.concatenate([end, np.roll(corner, -1, axis=1).ravel()])
 

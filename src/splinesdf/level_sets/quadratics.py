@@ -159,44 +159,28 @@ def _convex_part(quadratic: Quadratics) -> tuple[bool, Callable[[Floats], Ints]]
     return negative, branch
 
 
-def whole_ellipses(quadratics: Quadratics, boxes: Floats) -> tuple[Ints, Floats]:
-    """Ellipses that lie inside their triangle without crossing its boundary.
+def whole_ellipses(quadratics: Quadratics) -> tuple[Ints, Floats]:
+    """Ellipses that lie inside their triangle.
 
     Parameters
     ----------
     quadratics : Quadratics
-        Of 4 n triangles, none of which has a crossing, or NaN in ``constant`` to leave one out.
-    boxes : ndarray, shape (n, 4)
-        Their cells.
+        Of n triangles whose boundaries have no crossings.
 
     Returns
     -------
     tuple of ndarray, shapes (k,) and (k, 4, 2)
-        The triangles, and the ends of the ellipses' axes in order, the negative side on the left.
+        Which of the n, and the ends of the ellipses' axes in order, the negative side on the left.
     """
-    hessian = quadratics.hessian
-    determinant = hessian[:, 0, 0] * hessian[:, 1, 1] - hessian[:, 0, 1] ** 2
-    # Flatter ones count as parabolas, and rounding can make their Hessian exactly singular.
-    curved = determinant > _FLAT * np.trace(hessian, axis1=1, axis2=2) ** 2
-    rows = np.flatnonzero(curved & ~np.isnan(quadratics.constant))
-    chosen = quadratics.take(rows)
-    step = np.linalg.solve(chosen.hessian, -chosen.gradient[..., None])[..., 0]
-    extreme = chosen.constant + 0.5 * np.sum(chosen.gradient * step, axis=1)
-    upward = chosen.hessian[:, 0, 0] > 0.0
-    sides = boxes[rows // 4, 2:] - boxes[rows // 4, :2]
-    s, t = (step / sides).T
-    # bottom, right, top, left
-    number = np.where(np.abs(s) > np.abs(t), np.where(s > 0.0, 1, 3), np.where(t > 0.0, 2, 0))
-    inside = (number == rows % 4) & (np.maximum(np.abs(s), np.abs(t)) < 0.5)
-    # The cell's center is a corner of the triangle: it must lie outside the ellipse.
-    outside = np.where(upward, chosen.constant >= 0.0, chosen.constant < 0.0)
-    there = inside & outside & (np.where(upward, -extreme, extreme) > 0.0)
-    rows, chosen = rows[there], chosen.take(np.flatnonzero(there))
-    center = chosen.center + step[there]
-    values, axes = np.linalg.eigh(chosen.hessian)
-    radius = np.sqrt(-2.0 * extreme[there, None] / values)
+    rows = np.flatnonzero(quadratics.contains_ellipse())
+    f = quadratics.take(rows)
+    step = np.linalg.solve(f.hessian, -f.gradient[..., None])[..., 0]
+    extreme = f.constant + 0.5 * np.sum(f.gradient * step, axis=1)
+    center = f.center + step
+    values, axes = np.linalg.eigh(f.hessian)
+    radius = np.sqrt(-2.0 * extreme[:, None] / values)
     first, second = (radius[:, k, None] * axes[:, :, k] for k in (0, 1))
-    turn = np.sign(np.linalg.det(axes)) * np.where(upward[there], 1.0, -1.0)
+    turn = np.sign(np.linalg.det(axes)) * np.where(f.hessian[:, 0, 0] > 0.0, 1.0, -1.0)
     second *= turn[:, None]
     ring = np.stack([center + first, center + second, center - first, center - second], axis=1)
     return rows, ring
