@@ -115,6 +115,7 @@ def check_values_and_ends(spline: SplineSDF, contours: list[Contour], tolerance:
 @example(931157, "uniform", "whole", 0.5)  # an ellipse through a center and a vertex
 @example(561577, "uniform", "whole", 0.5)  # an ellipse through a center that fills a triangle
 @example(749330, "tensor", "whole", -1.0)  # the same
+@example(768250, "hierarchical", "whole", 0.5)  # an ellipse that is a point
 @example(15, "hierarchical", "whole", 0.5)  # a saddle at the level inside a triangle
 def test_area_below_the_level_is_what_pixels_say(
     seed: int, space: str, draw: str, level: float

@@ -61,14 +61,18 @@ class Quadratics(NamedTuple):
         across = np.abs(np.where(self.number % 2 == 0, s, t))
         return np.asarray((outward <= 0.5 + _BESIDE) & (outward >= across - _BESIDE))
 
+    def extremes(self) -> tuple[Floats, Floats]:
+        """Where each has no slope, measured from the center, and its value there: (n, 2), (n,)."""
+        step = np.linalg.solve(self.hessian, -self.gradient[..., None])[..., 0]
+        return step, self.constant + 0.5 * np.sum(self.gradient * step, axis=1)
+
     def contains_ellipse(self) -> Bools:
         """Whether each triangle contains all of its zero set, and that is an ellipse: (n,)."""
         determinant = np.linalg.det(self.hessian)
         result = determinant > _FLAT * np.trace(self.hessian, axis1=1, axis2=2) ** 2
         f = self.take(np.flatnonzero(result))
         inverse = np.linalg.inv(f.hessian)
-        middle = -np.einsum("nij,nj->ni", inverse, f.gradient)
-        extreme = f.constant + 0.5 * np.sum(f.gradient * middle, axis=1)
+        middle, extreme = f.extremes()
         outward = np.array([[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])[f.number]
         across = outward[:, ::-1]
         there = np.ones(len(middle), dtype=np.bool_)
@@ -174,8 +178,7 @@ def whole_ellipses(quadratics: Quadratics) -> tuple[Ints, Floats]:
     """
     rows = np.flatnonzero(quadratics.contains_ellipse())
     f = quadratics.take(rows)
-    step = np.linalg.solve(f.hessian, -f.gradient[..., None])[..., 0]
-    extreme = f.constant + 0.5 * np.sum(f.gradient * step, axis=1)
+    step, extreme = f.extremes()
     center = f.center + step
     values, axes = np.linalg.eigh(f.hessian)
     radius = np.sqrt(-2.0 * extreme[:, None] / values)
