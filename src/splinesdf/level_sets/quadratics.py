@@ -63,7 +63,7 @@ class Quadratics(NamedTuple):
 
     def extremes(self) -> tuple[Floats, Floats]:
         """Where each has no slope, measured from the center, and its value there: (n, 2), (n,)."""
-        step = np.linalg.solve(self.hessian, -self.gradient[..., None])[..., 0]
+        step: Floats = np.linalg.solve(self.hessian, -self.gradient[..., None])[..., 0]
         return step, self.constant + 0.5 * np.sum(self.gradient * step, axis=1)
 
     def contains_ellipse(self) -> Bools:
