@@ -63,8 +63,8 @@ class Quadratics(NamedTuple):
 
     def extremes(self) -> tuple[Floats, Floats]:
         """Where each has no slope, measured from the center, and its value there: (n, 2), (n,)."""
-        step: Floats = np.linalg.solve(self.hessian, -self.gradient[..., None])[..., 0]
-        return step, self.constant + 0.5 * np.sum(self.gradient * step, axis=1)
+        step = np.asarray(np.linalg.solve(self.hessian, -self.gradient[..., None])[..., 0], float)
+        return step, np.asarray(self.constant + 0.5 * np.sum(self.gradient * step, axis=1))
 
     def contains_ellipse(self) -> Bools:
         """Whether each triangle contains all of its zero set, and that is an ellipse: (n,)."""
