@@ -21,6 +21,7 @@ from splinesdf.measure import CellErrors, cell_errors, may_meet, sharpen
 from splinesdf.meshes import Box, Grid, Mesh, Quadtree
 from splinesdf.meshes.mesh import check_domain
 from splinesdf.meshes.quadtree import DEEPEST, cell_keys
+from splinesdf.probes import probes
 from splinesdf.quasi import check_operator, quasi_interpolate, uniform_functional
 from splinesdf.spaces import hierarchical_ordinates
 from splinesdf.spline import SplineSDF
@@ -193,11 +194,13 @@ def fit_steps(
     distance = _Counted(lambda points: signed_distance(shape, points))
     mesh = _start_mesh(space, box, start)
     interpolate = _interpolator(distance, operator)
+    points, exact = _probe(distance, shape, band, mesh)
     previous: tuple[SplineSDF, CellErrors, Bools] | None = None
     history: tuple[FitStep, ...] = ()
     while True:
         spline = interpolate(mesh, shape)
         errors, counts = _measure(distance, spline, band, previous)
+        np.maximum.at(errors.largest, spline.mesh.locate(points), np.abs(spline(points) - exact))
         bad = counts & (errors.largest > tolerance)
         if not bad.any():
             chosen = np.flatnonzero(counts)
@@ -310,6 +313,16 @@ def _interpolator(distance: _Counted, operator: str) -> Callable[[Mesh, Shape], 
         return SplineSDF(mesh, hierarchical_ordinates(mesh, functional), shape.name, shape.y_down)
 
     return interpolate
+
+
+def _probe(
+    distance: _Counted, shape: Shape, band: Band | None, mesh: Mesh
+) -> tuple[Floats, Floats]:
+    """Points in the domain that no part of the shape hides from, and the exact distances there."""
+    steps = (0.0,) if band is None else (*band, 0.5 * (band[0] + band[1]))
+    points = probes(distance, shape, steps)
+    points = points[mesh.locate(points) >= 0]
+    return points, distance(points)
 
 
 def _measure(
