@@ -340,3 +340,28 @@ def test_reader_that_goes_away_makes_no_noise(arguments: list[str], tmp_path: Pa
     os.close(writing)
     assert done.returncode == 1
     assert done.stderr == ""
+
+
+def test_names_do_not_steer_the_terminal(run: Command, tmp_path: Path) -> None:
+    loop = {"x": "cos(t)", "y": "sin(t)"}
+    (tmp_path / "x.json").write_text(json.dumps(loop | {"name": "\x1b[31mred\nx"}))
+    done = run("info", "x.json")
+    assert done.status == 0, done.err
+    assert "\x1b" not in done.out
+    assert "red x" in done.out
+
+
+def test_long_names_are_refused_in_a_line(run: Command) -> None:
+    long = 300 * "a"
+    for arguments in (
+        ("info", f"{long}.svg"),
+        ("fit", "gamma1", "-o", f"{long}.npz"),
+        ("fit", "gamma1", "--plot", f"{long}.png"),
+        ("offset", "gamma1", "-d", "1", "-o", f"{long}.svg"),
+        ("query", "gamma1", f"{long}.csv"),
+    ):
+        done = run(*arguments)
+        assert done.status == 2
+        assert done.out == ""
+        assert done.err.count("\n") == 1
+        assert "File name too long" in done.err

@@ -1,4 +1,4 @@
-"""The array types of the package, and the one check that every public function shares."""
+"""The array types of the package, and the checks that many public functions share."""
 
 from __future__ import annotations
 
@@ -24,3 +24,14 @@ def as_points(points: ArrayLike) -> Floats:
     if array.ndim == 0 or array.shape[-1] != 2:
         raise InputError(f"expected points of shape (..., 2), got shape {array.shape}")
     return array
+
+
+def positive_tolerance(tolerance: float) -> float:
+    """The tolerance, or an `InputError` if it is not a positive number."""
+    try:
+        number = float(tolerance)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected a tolerance as a number, got {tolerance!r}") from error
+    if not (np.isfinite(number) and number > 0.0):
+        raise InputError(f"expected a positive tolerance, got {number:g}")
+    return number

@@ -26,8 +26,8 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
         If the folder does not exist or cannot be written, or the name belongs to a folder,
         a device or a write-protected file.
     """
-    target = Path(os.path.realpath(path))
     check_target(path)
+    target = Path(os.path.realpath(path))
     # Beside the target, because a rename is atomic only within one file system.
     temporary = target.with_name(f".{secrets.token_hex(8)}.tmp")
     try:
@@ -56,9 +56,17 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 def check_target(path: str | os.PathLike[str]) -> None:
     """Raise `InputError` if no file of this name can be written: to be asked before long work."""
-    target = Path(os.path.realpath(path))
-    name = os.fspath(path)
-    if target.is_dir():
+    try:
+        name = os.fspath(path)
+        target = Path(os.path.realpath(path))
+        folder = target.is_dir()
+    except TypeError as error:
+        raise InputError(f"expected a file's path, got {type(path).__name__}") from error
+    except (OSError, ValueError) as error:
+        # Too long for the file system, or with a null character.
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"cannot write {name[:60]!r}...: {reason}") from error
+    if folder:
         raise InputError(f"expected a file name to write to, got the folder {name!r}")
     if not target.parent.is_dir():
         raise InputError(

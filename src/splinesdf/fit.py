@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from operator import index
 from typing import Literal
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf._arrays import Bools, Floats, Ints, positive_tolerance
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError, ToleranceNotReached
@@ -236,17 +237,6 @@ def fit_steps(
         mesh = _refine(mesh, bad, space)
 
 
-def positive_tolerance(tolerance: float) -> float:
-    """The tolerance, or an `InputError` if it is not a positive number."""
-    try:
-        number = float(tolerance)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a tolerance as a number, got {tolerance!r}") from error
-    if not (np.isfinite(number) and number > 0.0):
-        raise InputError(f"expected a positive tolerance, got {number:g}")
-    return number
-
-
 def default_domain(shape: Shape, band: Band | None = None) -> Box:
     """The shape's box grown by a tenth of its size and, if the band goes outward, by that."""
     xmin, ymin, xmax, ymax = shape.box
@@ -281,12 +271,24 @@ def _check_band(band: Band) -> Band:
 def _start_mesh(space: str, box: Box, start: tuple[int, int] | None) -> Mesh:
     width, height = box[2] - box[0], box[3] - box[1]
     side = max(width, height) / _START
-    m, n = start or (max(1, round(width / side)), max(1, round(height / side)))
+    m, n = max(1, round(width / side)), max(1, round(height / side))
+    if start is not None:
+        m, n = _check_start(start)
     if space == "hierarchical":
         return Quadtree.uniform(box, m, n)
     if space in ("tensor", "uniform"):
         return Grid.uniform(box, m, n)
     raise InputError(f"expected space 'hierarchical', 'tensor' or 'uniform', got {space!r}")
+
+
+def _check_start(start: tuple[int, int]) -> tuple[int, int]:
+    try:
+        m, n = (index(count) for count in start)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected start as two whole numbers, got {start!r}") from error
+    if not (m > 0 and n > 0 and m * n <= _MAX_CELLS):
+        raise InputError(f"expected a start of 1 to {_MAX_CELLS:,} cells, got {m} x {n}")
+    return m, n
 
 
 def _interpolator(distance: _Counted, operator: str) -> Callable[[Mesh, Shape], SplineSDF]:

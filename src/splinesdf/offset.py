@@ -10,11 +10,12 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from splinesdf._arrays import positive_tolerance
 from splinesdf.contour import Contour, evaluate
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError
-from splinesdf.fit import fit, positive_tolerance
+from splinesdf.fit import fit
 
 # The fit's error is measured, not proved; this share of the tolerance is asked of it, so that the
 # hundredth that the measurement may miss does not show.

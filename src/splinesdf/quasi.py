@@ -76,7 +76,7 @@ def quasi_interpolate(function: Function, mesh: Mesh, operator: str = "W") -> Sp
 
 def check_operator(operator: str) -> None:
     """Refuse names that are no operator."""
-    if operator not in _STENCILS:
+    if not isinstance(operator, str) or operator not in _STENCILS:
         raise InputError(f"expected an operator of V, W, S, P, got {operator!r}")
 
 

@@ -34,7 +34,9 @@ def print_pairs(**pairs: str) -> None:
 
     table = Table.grid(padding=(0, 2))
     for name, value in pairs.items():
-        table.add_row(name.replace("_", " "), value)
+        # A name from a file must not steer the terminal.
+        shown = "".join(c if c.isprintable() else " " for c in value)
+        table.add_row(name.replace("_", " "), shown)
     _console().print(table, highlight=False, markup=False)
 
 

@@ -20,6 +20,8 @@ from splinesdf.meshes import Grid, Mesh, Quadtree
 
 # Raised when an older reader would misunderstand a file.
 _VERSION = 1
+# Larger numbers overflow where they are multiplied; no fit of ours has them.
+_LARGEST = 1e100
 _COMMON = {"format", "version", "name", "y_down", "ordinates"}
 _MESHES = {"quadtree": {"domain", "shape", "split"}, "grid": {"x", "y"}}
 
@@ -62,7 +64,10 @@ def read_archive(path: str | os.PathLike[str]) -> Archive:
     InputError
         If the file is missing, no saved fit, damaged, or of a newer version.
     """
-    name = os.fspath(path)
+    try:
+        name = os.fspath(path)
+    except TypeError as error:
+        raise InputError(f"expected a file's path, got {type(path).__name__}") from error
     try:
         # Opened here because numpy leaves the file open if it is no archive.
         with Path(path).open("rb") as file:
@@ -124,6 +129,8 @@ def _floats(
     values = np.ascontiguousarray(_field(fields, key, "f", shape), dtype=np.float64)
     if not np.isfinite(values).all():
         raise InputError(f"expected finite numbers in {key!r}, got NaN or infinity")
+    if np.abs(values).max(initial=0.0) > _LARGEST:
+        raise InputError(f"expected numbers up to {_LARGEST:g} in {key!r}, got larger ones")
     return values
 
 

@@ -74,6 +74,10 @@ _NODES[0], _NODES[-1] = 0.0, 1.0
 _CHECKS = np.concatenate([a + (b - a) * np.array([0.21, 0.5, 0.79]) for a, b in pairwise(_NODES)])
 _SAMPLES = np.concatenate([_NODES, _CHECKS])
 
+# Coordinates up to this, and sizes down to its inverse: beyond, the products of four lengths that
+# the distance needs overflow or vanish, without a word.
+LARGEST = 1e60
+
 
 def _bernstein(t: Floats) -> Floats:
     """Values of the Bernstein polynomials of degree 7, shape (n, 8)."""
@@ -84,6 +88,16 @@ def _bernstein(t: Floats) -> Floats:
 
 _TO_CONTROL = np.linalg.inv(_bernstein(_NODES))
 _TO_CHECKS = _bernstein(_CHECKS) @ _TO_CONTROL
+
+
+def largest_coordinate(points: Floats) -> float:
+    """The largest absolute value of finite coordinates, or an `InputError` beyond `LARGEST`."""
+    largest = float(np.max(np.abs(points), initial=0.0))
+    if largest > LARGEST:
+        raise InputError(
+            f"expected coordinates up to {LARGEST:g}, got {largest:.3g}: use another unit"
+        )
+    return largest
 
 
 def compile_curve(curve: Curve) -> list[Floats]:
@@ -143,6 +157,7 @@ def _evaluate(curve: Curve, t: Floats) -> Floats:
     bad = ~np.isfinite(points).all(axis=-1)
     if bad.any():
         raise InputError(f"the curve is not finite at t = {float(t[bad][0]):.6g}")
+    largest_coordinate(points)
     return points
 
 
@@ -324,8 +339,9 @@ def _distinct(points: ArrayLike) -> Floats:
         raise InputError(f"expected points of shape (n, 2), got shape {corners.shape}")
     if not np.isfinite(corners).all():
         raise InputError("expected finite points, got NaN or infinity")
-    corners = corners[np.any(corners != np.roll(corners, 1, axis=0), axis=1)]
+    largest_coordinate(corners)
     count = len(np.unique(corners, axis=0))
+    corners = corners[np.any(corners != np.roll(corners, 1, axis=0), axis=1)]
     if count < 3:
         raise InputError(f"expected at least 3 distinct points, got {count}")
     return corners

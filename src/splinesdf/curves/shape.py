@@ -15,7 +15,13 @@ from splinesdf._arrays import Floats, Ints, as_points
 from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.formula import parse_curve
-from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
+from splinesdf.curves.interpolate import (
+    LARGEST,
+    compile_curve,
+    largest_coordinate,
+    periodic_cubic_spline,
+    polygon,
+)
 from splinesdf.curves.svg_path import parse_path
 from splinesdf.errors import InputError, OpenContourError
 
@@ -88,7 +94,8 @@ class Shape:
         OpenContourError
             If a loop's pieces do not follow one another, or it does not end where it starts.
         InputError
-            If a coordinate is not finite, nothing is left, or ``fill`` is unknown.
+            If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
+            the coordinates, nothing is left, or ``fill`` is unknown.
         """
         rule = _fill_rule(fill)
         arrays = [[_as_control(piece) for piece in loop] for loop in loops]
@@ -97,10 +104,14 @@ class Shape:
         every = np.concatenate([piece for loop in arrays for piece in loop])
         if not np.isfinite(every).all():
             raise InputError("expected finite coordinates, got NaN or infinity")
+        largest = largest_coordinate(every)
         size = float(np.max(np.ptp(every, axis=0)))
-        largest = float(np.max(np.abs(every)))
         if size == 0.0:
             raise InputError("expected a curve that encloses something, got a single point")
+        if size < 1.0 / LARGEST:
+            raise InputError(
+                f"expected a size of at least {1.0 / LARGEST:g}, got {size:.3g}: use another unit"
+            )
         if size < 1e-9 * largest:
             raise InputError(
                 f"the shape's size {size:.3g} is lost beside its coordinates of {largest:.3g}: "

@@ -75,12 +75,21 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
     except TypeError as error:
         raise InputError(f"expected a file's path, got {type(path).__name__}") from error
     try:
-        if file.is_dir():
+        try:
+            folder = file.is_dir()
+        except OSError as error:
+            raise InputError(f"cannot be read: {error.strerror or error}") from error
+        if folder:
             raise InputError("expected a file, got a folder")
         yield file
     except InputError as error:
-        name = file.name or str(file)
+        name = _short(file.name or str(file))
         raise type(error)(f"{name if name.isprintable() else repr(name)}: {error}") from error
+
+
+def _short(name: str) -> str:
+    """A name, not longer than file systems allow."""
+    return name if len(name) <= 255 else f"{name[:60]}..."
 
 
 def _text(file: Path) -> str:

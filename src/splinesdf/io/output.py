@@ -58,7 +58,10 @@ def write(
 
 def check_format(path: str | os.PathLike[str]) -> str:
     """The extension, in lower case, or an `InputError` if no contours can be written to it."""
-    suffix = Path(path).suffix.lower()
+    try:
+        suffix = Path(path).suffix.lower()
+    except TypeError as error:
+        raise InputError(f"expected a file's path, got {type(path).__name__}") from error
     if suffix not in WRITERS:
         raise InputError(
             f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"

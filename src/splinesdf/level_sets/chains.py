@@ -39,6 +39,10 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
         Closed, but for those that leave the domain. Exact up to rounding: every arc is the
         conic on which the triangle's quadratic takes the level.
     """
+    try:
+        level = float(level)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected a level as a number, got {level!r}") from error
     if not np.isfinite(level):
         raise InputError(f"expected a finite level, got {level!r}")
     crossings = find_crossings(mesh, ordinates, level)

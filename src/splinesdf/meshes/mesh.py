@@ -7,6 +7,9 @@ from typing import Protocol
 from splinesdf._arrays import Floats, Ints
 from splinesdf.errors import InputError
 
+# Beyond it, or below its inverse, the squares of lengths overflow or vanish without a word.
+_LARGEST = 1e100
+
 Box = tuple[float, float, float, float]
 
 
@@ -39,6 +42,13 @@ def check_domain(domain: Box) -> Box:
         xmin, ymin, xmax, ymax = (float(value) for value in domain)
     except (TypeError, ValueError) as error:
         raise InputError(f"expected a domain (xmin, ymin, xmax, ymax), got {domain!r}") from error
-    if not (xmax - xmin > 0.0 and ymax - ymin > 0.0 and abs(xmax - xmin + ymax - ymin) < 1e300):
-        raise InputError(f"expected a domain with xmin < xmax and ymin < ymax, got {domain!r}")
-    return xmin, ymin, xmax, ymax
+    box = xmin, ymin, xmax, ymax
+    # Not <= on the negation: NaN must fail.
+    if not (xmax > xmin and ymax > ymin):
+        raise InputError(f"expected a domain with xmin < xmax and ymin < ymax, got {box}")
+    if max(map(abs, box)) > _LARGEST or min(xmax - xmin, ymax - ymin) < 1.0 / _LARGEST:
+        raise InputError(
+            f"expected a domain with coordinates up to {_LARGEST:g} and sides of at least "
+            f"{1.0 / _LARGEST:g}, got {box}"
+        )
+    return box

@@ -57,7 +57,10 @@ class Quadtree:
         InputError
             If there are too few or too many flags for the nodes that they make.
         """
-        tree = cls.uniform(domain, *shape)
+        m, n = shape
+        if m * n > len(split):
+            raise InputError("expected a flag for every node of the quadtree, got too few")
+        tree = cls.uniform(domain, m, n)
         levels, indices, children = [], [], []
         index, start, level = tree.index, 0, 0
         while len(index):
