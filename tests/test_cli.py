@@ -351,6 +351,21 @@ def test_names_do_not_steer_the_terminal(run: Command, tmp_path: Path) -> None:
     assert "red x" in done.out
 
 
+def test_names_are_no_markup(run: Command, tmp_path: Path) -> None:
+    """They once ended the program."""
+    loop = {"x": "cos(t)", "y": "sin(t)", "name": "[/x] [bold]\x1b[31m"}
+    (tmp_path / "x.json").write_text(json.dumps(loop))
+    for arguments in (
+        ("fit", "x.json", "--tolerance", "0.1", "-o", "x.npz", "--plot", "x.png"),
+        ("offset", "x.json", "-d", "0.1", "--tolerance", "0.1", "-o", "x.svg"),
+        ("info", "x.npz"),
+    ):
+        done = run(*arguments)
+        assert done.status == 0, done.err
+        assert "[/x] [bold] [31m" in done.out
+        assert "\x1b" not in done.out + done.err
+
+
 def test_long_names_are_refused_in_a_line(run: Command) -> None:
     long = 300 * "a"
     for arguments in (

@@ -229,10 +229,10 @@ def paper(tables: bool, figures: str | None, as_json: bool) -> None:
 
     if tables or as_json or figures is None:
         rows = []
-        with working("computing the tables") as status:
+        with working("computing the tables") as say:
             for row in source.tables():
                 rows.append(row)
-                status.update(f"table {row.table}: {row.curve}, {row.operator}, {row.m} × {row.n}")
+                say(f"table {row.table}: {row.curve}, {row.operator}, {row.m} × {row.n}")
         if as_json:
             click.echo(json.dumps(source.as_json(rows), indent=2))
         else:
@@ -332,9 +332,9 @@ def _tolerance(shape: ss.Shape, tolerance: float | None) -> float:
 
 
 def _fit(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:
-    with working(f"fitting {shape.name} (the first run compiles)") as status:
+    with working(f"fitting {shape.name} (the first run compiles)") as say:
         for result in fit_steps(shape, tolerance=tolerance, **options):
-            status.update(
+            say(
                 f"fitting {shape.name}: {result.cells:,} cells, error {result.error:.2e}, "
                 f"tolerance {tolerance:.2e}"
             )
@@ -343,9 +343,9 @@ def _fit(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:
 
 def _offsets(shape: ss.Shape, distances: Iterable[float], tolerance: float) -> list[ss.Contour]:
     contours = []
-    with working("offsetting (the first run compiles)") as status:
+    with working("offsetting (the first run compiles)") as say:
         for distance in distances:
-            status.update(f"offsetting {shape.name} by {distance:g}")
+            say(f"offsetting {shape.name} by {distance:g}")
             contours += ss.offset(shape, distance, tolerance=tolerance)
     return contours
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -18,14 +18,18 @@ from splinesdf.paper import Row
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.status import Status
+    from rich.text import Text
 
 
 @contextmanager
-def working(text: str) -> Iterator[Status]:
-    """A spinner with a text on stderr while something runs; nothing if stderr is no terminal."""
-    with _console(stderr=True).status(text) as status:
-        yield status
+def working(text: str) -> Iterator[Callable[[str], None]]:
+    """A spinner with a text on stderr while something runs; nothing if stderr is no terminal.
+
+    Yields what changes the text.
+    """
+    console = _console(stderr=True)
+    with console.status(_plain(text)) as status:
+        yield lambda text: status.update(_plain(text))
 
 
 def print_pairs(**pairs: str) -> None:
@@ -34,10 +38,8 @@ def print_pairs(**pairs: str) -> None:
 
     table = Table.grid(padding=(0, 2))
     for name, value in pairs.items():
-        # A name from a file must not steer the terminal.
-        shown = "".join(c if c.isprintable() else " " for c in value)
-        table.add_row(name.replace("_", " "), shown)
-    _console().print(table, highlight=False, markup=False)
+        table.add_row(name.replace("_", " "), _plain(value))
+    _console().print(table, highlight=False)
 
 
 def print_fit(result: FitResult, shape: Shape, method: str, seconds: float) -> None:
@@ -173,7 +175,16 @@ def _table(title: str) -> Any:
     from rich.box import SIMPLE
     from rich.table import Table
 
-    return Table(title=title, title_justify="left", box=SIMPLE, pad_edge=False)
+    return Table(
+        title=_plain(title, "table.title"), title_justify="left", box=SIMPLE, pad_edge=False
+    )
+
+
+def _plain(text: str, style: str = "") -> Text:
+    """A text as it stands: a name from a file is no markup and must not steer the terminal."""
+    from rich.text import Text
+
+    return Text("".join(c if c.isprintable() else " " for c in text), style)
 
 
 def _console(*, stderr: bool = False, least: int = 0) -> Console:
