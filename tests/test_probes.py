@@ -9,16 +9,13 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.contour import Contour
+from splinesdf.curves.interpolate import polygon
 from splinesdf.probes import probes
 
 Small = Callable[[float, float], np.ndarray]
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 CIRCLE = "M1 0A1 1 0 0 1 -1 0A1 1 0 0 1 1 0z"
-
-
-def polygon_loop(corners: np.ndarray) -> list[np.ndarray]:
-    return [np.array(side) for side in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
 
 
 def turned(corners: np.ndarray, angle: float) -> np.ndarray:
@@ -39,13 +36,13 @@ def small_triangle(size: float, angle: float) -> np.ndarray:
 @pytest.mark.parametrize("outer", ["square", "circle"])
 def test_a_tiny_hole_beside_a_side_is_a_loop(outer: str, at: float, depth: float) -> None:
     if outer == "square":
-        big, center = polygon_loop(SQUARE), np.array([depth, at])
+        big, center = polygon(SQUARE), np.array([depth, at])
     else:
         circle = ss.Shape.from_svg_path(CIRCLE)
         big = [circle.piece(i) for i in range(circle.piece_count)]
         center = (1.0 - depth) * np.array([np.cos(7.0 * at), np.sin(7.0 * at)])
     hole = small_square(0.3 * depth, 0.4) + center
-    shape = ss.Shape.from_pieces([big, polygon_loop(hole)], fill="evenodd")
+    shape = ss.Shape.from_pieces([big, polygon(hole)], fill="evenodd")
     found = ss.offset(shape, 0.0, tolerance=0.2 * depth)
     assert len(found) == 2
     assert min(abs(contour.area) for contour in found) == pytest.approx((0.6 * depth) ** 2, rel=0.5)
@@ -68,7 +65,7 @@ def test_a_grain_beside_a_side_shows_in_a_far_offset(small: Small, gap: float) -
     for _ in range(8):
         y, far, angle = random.uniform([0.2, 0.05, 0.0], [0.8, 0.4, 6.28])
         grain = small(0.3 * gap, angle) + np.array([-gap, y])
-        shape = ss.Shape.from_pieces([polygon_loop(SQUARE), polygon_loop(grain)])
+        shape = ss.Shape.from_pieces([polygon(SQUARE), polygon(grain)])
         tolerance = 0.2 * gap
         (contour,) = ss.offset(shape, far, tolerance=tolerance)
         points = nearby(contour, y, 3.0 * np.sqrt(2.0 * gap * far) + 0.01, tolerance)

@@ -11,6 +11,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
+# Coordinates up to this, and sizes down to its inverse: beyond, the products of four lengths that
+# the distance needs overflow or vanish, without a word.
+LARGEST = 1e60
+
 
 def as_points(points: ArrayLike) -> Floats:
     """Points as a contiguous float64 array of shape (..., 2), or an `InputError`.
@@ -35,3 +39,13 @@ def positive_tolerance(tolerance: float) -> float:
     if not (np.isfinite(number) and number > 0.0):
         raise InputError(f"expected a positive tolerance, got {number:g}")
     return number
+
+
+def largest_coordinate(points: Floats) -> float:
+    """The largest absolute value of finite coordinates, or an `InputError` beyond `LARGEST`."""
+    largest = float(np.max(np.abs(points), initial=0.0))
+    if largest > LARGEST:
+        raise InputError(
+            f"expected coordinates up to {LARGEST:g}, got {largest:.3g}: use another unit"
+        )
+    return largest

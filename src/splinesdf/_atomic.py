@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
+from splinesdf._paths import as_path, shortened
 from splinesdf.errors import InputError
 
 
@@ -56,16 +57,14 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 def check_target(path: str | os.PathLike[str]) -> None:
     """Raise `InputError` if no file of this name can be written: to be asked before long work."""
+    name = str(as_path(path))
     try:
-        name = os.fspath(path)
         target = Path(os.path.realpath(path))
         folder = target.is_dir()
-    except TypeError as error:
-        raise InputError(f"expected a file's path, got {type(path).__name__}") from error
     except (OSError, ValueError) as error:
         # Too long for the file system, or with a null character.
         reason = getattr(error, "strerror", None) or error
-        raise InputError(f"cannot write {name[:60]!r}...: {reason}") from error
+        raise InputError(f"cannot write {shortened(name)!r}: {reason}") from error
     if folder:
         raise InputError(f"expected a file name to write to, got the folder {name!r}")
     if not target.parent.is_dir():

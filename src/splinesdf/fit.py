@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from operator import index
+from operator import index as as_whole
 from typing import Literal
 
 import numpy as np
@@ -201,6 +201,7 @@ def fit_steps(
     while True:
         spline = interpolate(mesh, shape)
         errors, counts = _measure(distance, spline, band, previous)
+        # What the samples of a cell may have stepped over.
         np.maximum.at(errors.largest, spline.mesh.locate(points), np.abs(spline(points) - exact))
         bad = counts & (errors.largest > tolerance)
         if not bad.any():
@@ -283,7 +284,7 @@ def _start_mesh(space: str, box: Box, start: tuple[int, int] | None) -> Mesh:
 
 def _check_start(start: tuple[int, int]) -> tuple[int, int]:
     try:
-        m, n = (index(count) for count in start)
+        m, n = (as_whole(count) for count in start)
     except (TypeError, ValueError) as error:
         raise InputError(f"expected start as two whole numbers, got {start!r}") from error
     if not (m > 0 and n > 0 and m * n <= _MAX_CELLS):

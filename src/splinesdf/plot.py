@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Floats
 from splinesdf._atomic import atomic_file
+from splinesdf._paths import as_path
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
@@ -87,7 +87,7 @@ def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
 
 def check_format(path: str | os.PathLike[str]) -> str:
     """The extension, in lower case, or an `InputError` if no figure can be written to it."""
-    suffix = Path(path).suffix.lower()
+    suffix = as_path(path).suffix.lower()
     if suffix not in FORMATS:
         raise InputError(
             f"expected a picture's name ending in {', '.join(FORMATS)}, got {os.fspath(path)!r}"

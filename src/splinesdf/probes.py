@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
+from splinesdf._arrays import Floats
+from splinesdf.curves.arclets import following_in_loop
 from splinesdf.curves.shape import Shape
 
 # Directions in the fan of a corner. Fewer: where other parts of the shape leave two gaps in the
@@ -48,12 +49,15 @@ def probes(
         In a corner's fan, the middle of where the corner is nearest. Many are nearer
         to another part of the shape than the distance.
     """
-    position, normal = _normals(shape)
-    fans = _fans(shape)
+    arriving, leaving = _directions(shape)
+    position, normal = _normals(shape, arriving, leaving)
+    fans = _fans(shape, arriving, leaving)
     result = []
     for step in sorted({abs(value) for value in distances}):
-        result += [position + step * normal, position - step * normal]
-        if step > 0.0:
+        if step == 0.0:
+            result.append(position)
+        else:
+            result += [position + step * normal, position - step * normal]
             result.append(_clearest(distance, fans, step))
     return np.concatenate(result)
 
@@ -66,13 +70,12 @@ class _Fans(NamedTuple):
     turn: Floats  # (n,) from there to the one that leaves
 
 
-def _normals(shape: Shape) -> tuple[Floats, Floats]:
+def _normals(shape: Shape, arriving: Floats, leaving: Floats) -> tuple[Floats, Floats]:
     """Ends and middles of arclets, and unit normals there."""
     arclets = shape.arclets
     order = np.arange(arclets.power.shape[1])
     middle = arclets.start + np.einsum("nkc,k->nc", arclets.power, 0.5**order)
     across = np.einsum("nkc,k->nc", arclets.power, order * 0.5 ** (order - 1.0))
-    arriving, leaving = _directions(shape)
     position = np.concatenate([arclets.start, middle, arclets.end]) + arclets.origin
     along = np.concatenate([leaving, across, arriving])
     length = np.hypot(along[:, 0], along[:, 1])[:, None]
@@ -93,10 +96,10 @@ def _directions(shape: Shape) -> tuple[Floats, Floats]:
     return moving(arriving), moving(arclets.power[:, 1])
 
 
-def _fans(shape: Shape) -> _Fans:
+def _fans(shape: Shape, arriving: Floats, leaving: Floats) -> _Fans:
     arclets = shape.arclets
-    arriving, leaving = _directions(shape)
-    leaving = leaving[_following(shape)]
+    loop = np.searchsorted(shape.loops, arclets.piece, side="right") - 1
+    leaving = leaving[following_in_loop(loop)]
     turn = np.arctan2(
         arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
         np.sum(arriving * leaving, axis=1),
@@ -107,15 +110,6 @@ def _fans(shape: Shape) -> _Fans:
     outward = np.where(turn > 0.0, -0.5 * np.pi, 0.5 * np.pi)
     first = np.arctan2(arriving[:, 1], arriving[:, 0]) + outward
     return _Fans(arclets.end[corner] + arclets.origin, first, turn)
-
-
-def _following(shape: Shape) -> Ints:
-    """The arclet after each one in its loop."""
-    loop = np.searchsorted(shape.loops, shape.arclets.piece, side="right") - 1
-    first = np.flatnonzero(np.diff(loop, prepend=-1))
-    result = np.arange(1, len(loop) + 1)
-    result[np.append(first[1:], len(loop)) - 1] = first
-    return result
 
 
 def _clearest(distance: Callable[[Floats], Floats], fans: _Fans, step: float) -> Floats:

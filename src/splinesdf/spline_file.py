@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import zipfile
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -15,13 +14,13 @@ from numpy.typing import NDArray
 
 from splinesdf._arrays import Floats
 from splinesdf._atomic import atomic_file
+from splinesdf._paths import as_path, shortened
 from splinesdf.errors import InputError
 from splinesdf.meshes import Grid, Mesh, Quadtree
+from splinesdf.meshes.mesh import SQUARABLE
 
 # Raised when an older reader would misunderstand a file.
 _VERSION = 1
-# Larger numbers overflow where they are multiplied; no fit of ours has them.
-_LARGEST = 1e100
 _COMMON = {"format", "version", "name", "y_down", "ordinates"}
 _MESHES = {"quadtree": {"domain", "shape", "split"}, "grid": {"x", "y"}}
 
@@ -64,13 +63,11 @@ def read_archive(path: str | os.PathLike[str]) -> Archive:
     InputError
         If the file is missing, no saved fit, damaged, or of a newer version.
     """
-    try:
-        name = os.fspath(path)
-    except TypeError as error:
-        raise InputError(f"expected a file's path, got {type(path).__name__}") from error
+    archive = as_path(path)
+    name = shortened(str(archive))
     try:
         # Opened here because numpy leaves the file open if it is no archive.
-        with Path(path).open("rb") as file:
+        with archive.open("rb") as file:
             if not zipfile.is_zipfile(file):
                 raise zipfile.BadZipFile
             file.seek(0)
@@ -129,8 +126,8 @@ def _floats(
     values = np.ascontiguousarray(_field(fields, key, "f", shape), dtype=np.float64)
     if not np.isfinite(values).all():
         raise InputError(f"expected finite numbers in {key!r}, got NaN or infinity")
-    if np.abs(values).max(initial=0.0) > _LARGEST:
-        raise InputError(f"expected numbers up to {_LARGEST:g} in {key!r}, got larger ones")
+    if np.abs(values).max(initial=0.0) > SQUARABLE:
+        raise InputError(f"expected numbers up to {SQUARABLE:g} in {key!r}, got larger ones")
     return values
 
 

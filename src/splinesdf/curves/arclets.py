@@ -58,10 +58,7 @@ def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
     fresh = interval[:, 0] == 0.0
     start[fresh] = corners[piece[fresh]] - origin
     loop = np.searchsorted(loops, piece, side="right") - 1
-    first = np.flatnonzero(np.diff(loop, prepend=-1))
-    following = np.arange(1, len(start) + 1)
-    following[np.append(first[1:], len(start)) - 1] = first
-    end = start[following]
+    end = start[following_in_loop(loop)]
     boxes[:, :2] = np.minimum(boxes[:, :2], np.minimum(start, end))
     boxes[:, 2:] = np.maximum(boxes[:, 2:], np.maximum(start, end))
     tree_boxes, tree_range, chain = _tree(boxes, loop)
@@ -79,6 +76,14 @@ def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
         range=tree_range,
         chain=chain,
     )
+
+
+def following_in_loop(loop: Ints) -> Ints:
+    """The arclet after each one, given each one's loop, in order; the last one's is the first."""
+    first = np.flatnonzero(np.diff(loop, prepend=-1))
+    result = np.arange(1, len(loop) + 1)
+    result[np.append(first[1:], len(loop)) - 1] = first
+    return result
 
 
 def _cut(arcs: Floats, piece: Ints) -> tuple[Floats, Ints, Floats]:

@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Bools, Floats, as_points
+from splinesdf._arrays import Bools, Floats, as_points, largest_coordinate
 from splinesdf.errors import InputError
 
 _DEGREE = 7
@@ -74,10 +74,6 @@ _NODES[0], _NODES[-1] = 0.0, 1.0
 _CHECKS = np.concatenate([a + (b - a) * np.array([0.21, 0.5, 0.79]) for a, b in pairwise(_NODES)])
 _SAMPLES = np.concatenate([_NODES, _CHECKS])
 
-# Coordinates up to this, and sizes down to its inverse: beyond, the products of four lengths that
-# the distance needs overflow or vanish, without a word.
-LARGEST = 1e60
-
 
 def _bernstein(t: Floats) -> Floats:
     """Values of the Bernstein polynomials of degree 7, shape (n, 8)."""
@@ -88,16 +84,6 @@ def _bernstein(t: Floats) -> Floats:
 
 _TO_CONTROL = np.linalg.inv(_bernstein(_NODES))
 _TO_CHECKS = _bernstein(_CHECKS) @ _TO_CONTROL
-
-
-def largest_coordinate(points: Floats) -> float:
-    """The largest absolute value of finite coordinates, or an `InputError` beyond `LARGEST`."""
-    largest = float(np.max(np.abs(points), initial=0.0))
-    if largest > LARGEST:
-        raise InputError(
-            f"expected coordinates up to {LARGEST:g}, got {largest:.3g}: use another unit"
-        )
-    return largest
 
 
 def compile_curve(curve: Curve) -> list[Floats]:

@@ -11,17 +11,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Floats, Ints, as_points
+from splinesdf._arrays import LARGEST, Floats, Ints, as_points, largest_coordinate
 from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.formula import parse_curve
-from splinesdf.curves.interpolate import (
-    LARGEST,
-    compile_curve,
-    largest_coordinate,
-    periodic_cubic_spline,
-    polygon,
-)
+from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
 from splinesdf.curves.svg_path import parse_path
 from splinesdf.errors import InputError, OpenContourError
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from splinesdf._arrays import Floats
+from splinesdf._paths import as_path, shortened
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
 from splinesdf.io.readers import READERS
@@ -70,10 +71,7 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
 @contextmanager
 def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
     """The path, and the file's name in front of every error."""
-    try:
-        file = Path(path)
-    except TypeError as error:
-        raise InputError(f"expected a file's path, got {type(path).__name__}") from error
+    file = as_path(path)
     try:
         try:
             folder = file.is_dir()
@@ -83,13 +81,8 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
             raise InputError("expected a file, got a folder")
         yield file
     except InputError as error:
-        name = _short(file.name or str(file))
+        name = shortened(file.name or str(file))
         raise type(error)(f"{name if name.isprintable() else repr(name)}: {error}") from error
-
-
-def _short(name: str) -> str:
-    """A name, not longer than file systems allow."""
-    return name if len(name) <= 255 else f"{name[:60]}..."
 
 
 def _text(file: Path) -> str:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from pathlib import Path
 
 import numpy as np
 
 from splinesdf._atomic import write_text
+from splinesdf._paths import as_path
 from splinesdf.contour import Contour, box, check_tolerance
 from splinesdf.errors import InputError
 from splinesdf.io.writers import WRITERS
@@ -58,10 +58,7 @@ def write(
 
 def check_format(path: str | os.PathLike[str]) -> str:
     """The extension, in lower case, or an `InputError` if no contours can be written to it."""
-    try:
-        suffix = Path(path).suffix.lower()
-    except TypeError as error:
-        raise InputError(f"expected a file's path, got {type(path).__name__}") from error
+    suffix = as_path(path).suffix.lower()
     if suffix not in WRITERS:
         raise InputError(
             f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"

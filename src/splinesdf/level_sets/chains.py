@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf._arrays import Floats, Ints
 from splinesdf.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.level_sets.arcs import conic_arcs, shoulders
@@ -67,7 +67,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
         if len(points) == 0:
             continue
         _, arcs, weights = conic_arcs(f, points[:-1], points[1:], shortest)
-        result.append(Contour(arcs, weights, closed, float(level), y_down))
+        result.append(Contour(arcs, weights, closed, level, y_down))
     return result
 
 
@@ -114,8 +114,8 @@ def _chains(start: Ints, end: Ints) -> list[tuple[Ints, bool]]:
 def _without_short(f: Quadratics, points: Floats, shortest: float) -> tuple[Quadratics, Floats]:
     """What is left of a chain of n arcs and its n + 1 points; no points if nothing is."""
     around, far = _around(f, points[:-1], points[1:], shortest)
-    f = f.take(np.repeat(np.arange(len(far)), np.where(around, 2, 1)))
-    points = np.insert(points, np.flatnonzero(around) + 1, far[around], axis=0)
+    f = f.take(np.sort(np.append(np.arange(len(points) - 1), around)))
+    points = np.insert(points, around + 1, far, axis=0)
     short = np.linalg.norm(np.diff(points, axis=0), axis=1) < shortest
     while short.any():
         if short.all():
@@ -128,14 +128,14 @@ def _without_short(f: Quadratics, points: Floats, shortest: float) -> tuple[Quad
     return f, points
 
 
-def _around(f: Quadratics, first: Floats, last: Floats, shortest: float) -> tuple[Bools, Floats]:
-    """Arcs with a short chord that go nearly once around an ellipse, and their far ends."""
+def _around(f: Quadratics, first: Floats, last: Floats, shortest: float) -> tuple[Ints, Floats]:
+    """Which arcs with a short chord go nearly once around an ellipse, and their far ends."""
     chord = last - first
     gradient = f.gradient_at(first)
     backward = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] < 0.0
-    around = backward & (np.linalg.norm(chord, axis=1) < shortest)
-    far = shoulders(f, first, last)
+    rows = np.flatnonzero(backward & (np.linalg.norm(chord, axis=1) < shortest))
+    f = f.take(rows)
+    far = shoulders(f, first[rows], last[rows])
     # What rounding sends backward stays near, or would leave the triangle on the way round.
-    around &= np.linalg.norm(far - first, axis=1) > shortest
-    around[around] = f.take(np.flatnonzero(around)).contains_ellipse()
-    return around, far
+    there = (np.linalg.norm(far - first[rows], axis=1) > shortest) & f.contains_ellipse()
+    return rows[there], far[there]

@@ -8,7 +8,7 @@ from splinesdf._arrays import Floats, Ints
 from splinesdf.errors import InputError
 
 # Beyond it, or below its inverse, the squares of lengths overflow or vanish without a word.
-_LARGEST = 1e100
+SQUARABLE = 1e100
 
 Box = tuple[float, float, float, float]
 
@@ -43,12 +43,12 @@ def check_domain(domain: Box) -> Box:
     except (TypeError, ValueError) as error:
         raise InputError(f"expected a domain (xmin, ymin, xmax, ymax), got {domain!r}") from error
     box = xmin, ymin, xmax, ymax
-    # Not <= on the negation: NaN must fail.
+    # Not with the signs turned: NaN must fail.
     if not (xmax > xmin and ymax > ymin):
         raise InputError(f"expected a domain with xmin < xmax and ymin < ymax, got {box}")
-    if max(map(abs, box)) > _LARGEST or min(xmax - xmin, ymax - ymin) < 1.0 / _LARGEST:
+    if max(map(abs, box)) > SQUARABLE or min(xmax - xmin, ymax - ymin) < 1.0 / SQUARABLE:
         raise InputError(
-            f"expected a domain with coordinates up to {_LARGEST:g} and sides of at least "
-            f"{1.0 / _LARGEST:g}, got {box}"
+            f"expected a domain with coordinates up to {SQUARABLE:g} and sides of at least "
+            f"{1.0 / SQUARABLE:g}, got {box}"
         )
     return box
