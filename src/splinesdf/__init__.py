@@ -2,7 +2,14 @@
 
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
-from splinesdf.distance import closest_point, signed_distance
+from splinesdf.distance import (
+    DistanceGrid,
+    Projection,
+    closest_point,
+    project,
+    signed_distance,
+    signed_distance_grid,
+)
 from splinesdf.errors import (
     InputError,
     MissingExtraError,
@@ -19,10 +26,12 @@ from splinesdf.spline import SplineSDF, load
 __version__ = "0.1.0"
 __all__ = [
     "Contour",
+    "DistanceGrid",
     "FitResult",
     "InputError",
     "MissingExtraError",
     "OpenContourError",
+    "Projection",
     "Shape",
     "SplineSDF",
     "SplineSDFError",
@@ -31,7 +40,9 @@ __all__ = [
     "fit",
     "load",
     "offset",
+    "project",
     "read",
     "signed_distance",
+    "signed_distance_grid",
     "write",
 ]

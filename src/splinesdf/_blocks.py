@@ -1,4 +1,4 @@
-"""Work on many points in blocks, on all cores."""
+"""Work in blocks, on all processors that this process may use."""
 
 from __future__ import annotations
 
@@ -11,12 +11,22 @@ from concurrent.futures import ThreadPoolExecutor
 _BLOCK = 8192
 
 
-def in_blocks(count: int, work: Callable[[slice], None]) -> None:
-    """Call ``work(part)`` for slices that cover ``range(count)``; kernels release the GIL."""
-    parts = [slice(first, min(first + _BLOCK, count)) for first in range(0, count, _BLOCK)]
-    if len(parts) <= 1:
+def processors() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def in_blocks(count: int, work: Callable[[slice], None], *, size: int = _BLOCK) -> None:
+    """Call ``work(part)`` for slices of ``size`` that cover ``range(count)``.
+
+    Kernels release the GIL, so the threads' work overlaps.
+    """
+    parts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
+    if len(parts) <= 1 or processors() == 1:
         for part in parts:
             work(part)
         return
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(processors()) as pool:
         list(pool.map(work, parts))  # the list raises what a block raised

@@ -8,21 +8,61 @@ from splinesdf._arrays import Floats, Ints
 
 
 class Arclets(NamedTuple):
-    """What the distance kernels read. Coordinates are relative to ``origin``.
+    """Short monotone arcs and a tree over them. Coordinates are relative to ``origin``.
 
     With n arclets of degree at most d, and 2n - 1 tree nodes in preorder (a node's left child
     follows it; the children halve its range of arclets).
     """
 
     origin: Floats  # (2,)
-    degree: Ints  # (n,)
     start: Floats  # (n, 2) first point; the next arclet's start is this one's end, to the bit
     end: Floats  # (n, 2)
     power: Floats  # (n, d + 1, 2) power basis of the arc minus its start, parameter in [0, 1]
-    gram: Floats  # (n, 2 d + 1) Bernstein coefficients of |arc - start|^2
-    linear: Floats  # (n, 2 d + 1, 2) the same degree's coefficients of arc - start
     piece: Ints  # (n,) which piece of the shape
     interval: Floats  # (n, 2) the parameters of that piece where the arclet starts and ends
+    following: Ints  # (n,) the next arclet along the curve, -1 for none
+    arcs: Floats  # (n, 8 (d + 1)) all that the kernels read of an arclet, in one row; see below
+    tree: Floats  # (2 n - 1, 8) all that the search for the nearest reads of a node; see below
     boxes: Floats  # (2 n - 1, 4) xmin, ymin, xmax, ymax of a node
     range: Ints  # (2 n - 1, 2) first and past-the-end arclet of a node
-    chain: Ints  # (2 n - 1,) 1 if the node's arclets follow one another in one loop
+    chain: Ints  # (2 n - 1,) 1 if the node's arclets follow one another
+
+
+# A row of ``arcs``, for an arclet of degree d (m = 2 d + 1); what a row has beyond that is zero:
+#     0      1 2   3 4     5 ... 5+2d          m numbers  m numbers  m numbers
+#     d      end   start   power, from t on    x          y          squares
+# The last three are Bernstein coefficients of degree 2 d: of the arc minus its start (x, y) and
+# of the square of its length, so that |arc - p|^2 has the coefficients
+# squares + |p - start|^2 - 2 (p - start) . (x, y).
+#
+# A row of ``tree``: a segment's first point (0, 1), the vector to its second (2, 3), 1 / its
+# squared length, or 0 for a point (4), the radius around it in which all of the node's arclets
+# lie (5), first and past-the-end arclet (6, 7).
+
+
+class Cells(NamedTuple):
+    """Points sorted into the 4^levels finest cells of a quadtree, and one for those outside it."""
+
+    box: Floats  # (4,) lower left corner, width and height of the root
+    levels: int
+    starts: Ints  # (4^levels + 2,) cell c has the points starts[c] to before starts[c + 1]
+    points: Floats  # (n, 2) along the Z-shaped curve through the cells
+
+
+class Feet(NamedTuple):
+    """Closest points, in the order of the cells' points, as the kernel fills them in."""
+
+    distance: Floats  # (n,) without sign
+    closest: Floats  # (n, 2)
+    arclet: Ints  # (n,) -1 where there is none
+    at: Floats  # (n,) parameter of the arclet, in [0, 1]
+    farthest: float  # beyond it nothing is looked for
+
+
+class Scratch(NamedTuple):
+    """Room that a thread's search uses again and again."""
+
+    coefficients: Floats  # (depth, 2 d + 1) of squared distances to parts of an arclet
+    spans: Floats  # (depth, 2) their parameters
+    nodes: Ints  # (n,) of the tree, still to be looked at
+    bounds: Floats  # (n,) that nothing under them is nearer than

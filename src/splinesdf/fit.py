@@ -33,8 +33,6 @@ Band = tuple[float, float]
 # Cells along the domain's longer side at the start. More: cells wasted where the distance is
 # smooth; fewer: more rounds for nothing, each a halving.
 _START = 4
-# Share of the shape's size by which the default domain goes beyond its box.
-_MARGIN = 0.1
 # A million cells are 64 MB of ordinates and minutes of work: beyond it something is wrong.
 _MAX_CELLS = 1_000_000
 # Rounding of the distance, in units of the largest coordinate: no tolerance below it can be kept.
@@ -184,7 +182,8 @@ def fit_steps(
     check_operator(operator)
     if band is not None:
         band = _check_band(band)
-    box = default_domain(shape, band) if domain is None else check_domain(domain)
+    outward = 0.0 if band is None else max(band[1], 0.0)
+    box = shape.default_domain(outward) if domain is None else check_domain(domain)
     largest = max(abs(value) for value in (*shape.box, *box))
     tolerance = positive_tolerance(tolerance)
     if tolerance <= _ROUNDING * largest:
@@ -236,15 +235,6 @@ def fit_steps(
         if stopped != "refining":
             return
         mesh = _refine(mesh, bad, space)
-
-
-def default_domain(shape: Shape, band: Band | None = None) -> Box:
-    """The shape's box grown by a tenth of its size and, if the band goes outward, by that."""
-    xmin, ymin, xmax, ymax = shape.box
-    margin = _MARGIN * shape.size
-    if band is not None and band[1] > 0.0:
-        margin += band[1]
-    return xmin - margin, ymin - margin, xmax + margin, ymax + margin
 
 
 class _Counted:

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Floats
-from splinesdf.curves.arclets import following_in_loop
+from splinesdf._tables import Arclets
+from splinesdf.curves.geometry import derivatives_at, end_tangents, points_at, turns
 from splinesdf.curves.shape import Shape
 
 # Directions in the fan of a corner. Fewer: where other parts of the shape leave two gaps in the
@@ -49,9 +50,9 @@ def probes(
         In a corner's fan, the middle of where the corner is nearest. Many are nearer
         to another part of the shape than the distance.
     """
-    arriving, leaving = _directions(shape)
-    position, normal = _normals(shape, arriving, leaving)
-    fans = _fans(shape, arriving, leaving)
+    leaving, arriving = end_tangents(shape.boundary)
+    position, normal = _normals(shape.boundary, arriving, leaving)
+    fans = _fans(shape.boundary, arriving)
     result = []
     for step in sorted({abs(value) for value in distances}):
         if step == 0.0:
@@ -70,40 +71,19 @@ class _Fans(NamedTuple):
     turn: Floats  # (n,) from there to the one that leaves
 
 
-def _normals(shape: Shape, arriving: Floats, leaving: Floats) -> tuple[Floats, Floats]:
+def _normals(arclets: Arclets, arriving: Floats, leaving: Floats) -> tuple[Floats, Floats]:
     """Ends and middles of arclets, and unit normals there."""
-    arclets = shape.arclets
-    order = np.arange(arclets.power.shape[1])
-    middle = arclets.start + np.einsum("nkc,k->nc", arclets.power, 0.5**order)
-    across = np.einsum("nkc,k->nc", arclets.power, order * 0.5 ** (order - 1.0))
+    every = np.arange(len(arclets.start))
+    half = np.full(len(every), 0.5)
+    middle, across = points_at(arclets, every, half), derivatives_at(arclets, every, half)[0]
     position = np.concatenate([arclets.start, middle, arclets.end]) + arclets.origin
     along = np.concatenate([leaving, across, arriving])
     length = np.hypot(along[:, 0], along[:, 1])[:, None]
     return position, np.stack([-along[:, 1], along[:, 0]], axis=1) / np.where(length, length, 1.0)
 
 
-def _directions(shape: Shape) -> tuple[Floats, Floats]:
-    """Tangents at the end and at the start of every arclet."""
-    arclets = shape.arclets
-    order = np.arange(arclets.power.shape[1], dtype=np.float64)
-    chord = arclets.end - arclets.start
-
-    def moving(tangent: Floats) -> Floats:
-        # Where the curve stands still for a moment, as in a cusp, the chord says where it goes.
-        return np.where(np.any(tangent != 0.0, axis=1)[:, None], tangent, chord)
-
-    arriving = np.einsum("nkc,k->nc", arclets.power, order)
-    return moving(arriving), moving(arclets.power[:, 1])
-
-
-def _fans(shape: Shape, arriving: Floats, leaving: Floats) -> _Fans:
-    arclets = shape.arclets
-    loop = np.searchsorted(shape.loops, arclets.piece, side="right") - 1
-    leaving = leaving[following_in_loop(loop)]
-    turn = np.arctan2(
-        arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
-        np.sum(arriving * leaving, axis=1),
-    )
+def _fans(arclets: Arclets, arriving: Floats) -> _Fans:
+    turn = turns(arclets)
     corner = np.abs(turn) > _CORNER
     arriving, turn = arriving[corner], turn[corner]
     # The side that the curve turns away from.

@@ -1,161 +1,229 @@
-"""Arclets: a boundary cut into short, nearly straight arcs under a tree of boxes.
+"""Arclets: a boundary cut into short, nearly straight arcs under a tree of boxes and capsules.
 
-    pieces ──split where y turns──> y-monotone ──halve while they bulge──> arclets ──halve the
-    list──> tree
+    pieces ──split where x or y turns──> monotone ──halve while they bulge──> arclets ──halve
+    the list──> tree
 
-The distance kernel asks three things of an arclet: a box, the squared distance to a point as a
-Bernstein polynomial (two multiplications a coefficient, thanks to ``gram`` and ``linear``), and
-points and derivatives near a parameter. The winding kernel needs only that y is monotone.
+The distance kernel asks three things of an arclet: a capsule around it, the squared distance to
+a point as a Bernstein polynomial (two multiplications a coefficient, thanks to ``gram`` and
+``linear``), and points and derivatives near a parameter. The winding kernel needs only that y is
+monotone, the search for crossings that directions stay within a quadrant.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets
+from splinesdf.curves.hierarchy import build_hierarchy
 
 # An arclet's control points stay within this share of its chord's length from the chord (about
-# 45 degrees of turning). Smaller: more arclets, tighter boxes, fewer Newton steps, a deeper tree.
-# It is a matter of speed only: no guarantee depends on it.
+# 45 degrees of turning). Smaller: more arclets, tighter capsules, fewer Newton steps, a deeper
+# tree. It is a matter of speed only: no guarantee depends on it.
 _BULGE = 0.1
 # Halvings after which a piece is taken as it is. Only pieces that shrink to a point (cusps, where
 # the chord vanishes as fast as the bulge) get there; the kernel is exact on them all the same.
 _HALVINGS = 12
-# Halvings to bracket each turn of y; two turns closer than 2^-40 of a piece are one, to rounding.
+# Halvings to bracket each turn; two turns closer than 2^-40 of a piece are one, to rounding.
 _TURN_HALVINGS = 40
+# A step between control points below this share of the largest coordinate is rounding: the x of a
+# straight vertical piece must not be seen to turn. Too large: a real turn is missed, and the
+# winding number is wrong within that share of the size of the curve there.
+_NO_STEP = 8 * 2.220446049250313e-16
+
+
+class Arcs(NamedTuple):
+    """Some arcs of one degree, and where they come from."""
+
+    control: Floats  # (n, degree + 1, 2)
+    piece: Ints  # (n,) which piece of the shape
+    interval: Floats  # (n, 2) the parameters of that piece at the arc's start and end
+
+
+class Runs(NamedTuple):
+    """How arcs follow one another."""
+
+    label: Ints  # (n,) which run the arc belongs to
+    place: Ints  # (n,) its place in the run
+    closed: Bools  # (n_runs,) whether the last one leads to the first one
 
 
 def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
-    """Cut the pieces of a shape (see `Shape`) into arclets and put the tree of boxes over them."""
+    """Cut the pieces of a shape (see `Shape`) into arclets and put the tree over them."""
     corners = control[starts[:-1]]
-    low, high = control.min(axis=0), control.max(axis=0)
-    origin = 0.5 * (low + high)
+    origin = 0.5 * (control.min(axis=0) + control.max(axis=0))
     degrees = np.diff(starts) - 1
-    parts = []
+    groups = []
     for degree in np.unique(degrees):
         chosen = np.flatnonzero(degrees == degree)
         arcs = control[starts[chosen][:, None] + np.arange(degree + 1)] - origin
-        parts.append((int(degree), *_cut(arcs, chosen)))
-    order = np.lexsort(
-        (
-            np.concatenate([interval[:, 0] for *_, interval in parts]),
-            np.concatenate([piece for _, _, piece, _ in parts]),
-        )
+        interval = np.broadcast_to([0.0, 1.0], (len(arcs), 2)).copy()
+        cut = _cut(Arcs(arcs, chosen, interval))
+        # Where a piece begins, take the piece's own first point: the cut must not move it.
+        fresh = cut.interval[:, 0] == 0.0
+        cut.control[fresh, 0] = corners[cut.piece[fresh]] - origin
+        groups.append(cut)
+    piece = np.concatenate([group.piece for group in groups])
+    order = np.lexsort((np.concatenate([group.interval[:, 0] for group in groups]), piece))
+    place = np.empty(len(piece), dtype=np.int64)
+    place[order] = np.arange(len(piece))
+    label = np.searchsorted(loops, piece, side="right") - 1
+    return assemble(groups, Runs(label, place, np.ones(len(loops) - 1, dtype=bool)), origin)
+
+
+def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
+    """Tables and tree of arcs that are short and monotone already.
+
+    Parameters
+    ----------
+    groups : list of Arcs
+        One a degree, relative to ``origin``.
+    runs : Runs
+        Of the arcs of all groups, one group after the other. Runs that are near one another
+        become neighbors in the tree.
+    origin : ndarray, shape (2,)
+    """
+    degree = np.concatenate(
+        [np.full(len(arcs.control), arcs.control.shape[1] - 1, dtype=np.int64) for arcs in groups]
     )
-    degree = np.concatenate([np.full(len(arcs), d, dtype=np.int64) for d, arcs, _, _ in parts])
-    piece = np.concatenate([piece for _, _, piece, _ in parts])[order]
-    interval = np.concatenate([interval for *_, interval in parts])[order]
+    start = np.concatenate([arcs.control[:, 0] for arcs in groups])
+    end = np.concatenate([arcs.control[:, -1] for arcs in groups])
+    order = np.lexsort((runs.place, _near_ones_together(start, runs.label)[runs.label]))
+    label = runs.label[order]
+    following = _following(label, runs.closed)
+    start, end = start[order], end[order]
+    end = np.where((following >= 0)[:, None], start[following], end)
     most = int(degree.max())
-    padded = [_tables(arcs, d, most) for d, arcs, _, _ in parts]
-    power, gram, linear, boxes = (
+    padded = [_tables(arcs.control, most) for arcs in groups]
+    power, bernstein, boxes, radius = (
         np.ascontiguousarray(np.concatenate(column)[order]) for column in zip(*padded, strict=True)
     )
-    start = np.concatenate([arcs[:, 0] for _, arcs, _, _ in parts])[order]
-    # Where a piece begins, take the piece's own first point: the cut must not move it by an ulp.
-    fresh = interval[:, 0] == 0.0
-    start[fresh] = corners[piece[fresh]] - origin
-    loop = np.searchsorted(loops, piece, side="right") - 1
-    end = start[following_in_loop(loop)]
     boxes[:, :2] = np.minimum(boxes[:, :2], np.minimum(start, end))
     boxes[:, 2:] = np.maximum(boxes[:, 2:], np.maximum(start, end))
-    tree_boxes, tree_range, chain = _tree(boxes, loop)
+    node_boxes, tree, ranges, chain = build_hierarchy(start, end, boxes, radius, label)
     return Arclets(
         origin=origin,
-        degree=degree[order],
         start=np.ascontiguousarray(start),
         end=np.ascontiguousarray(end),
         power=power,
-        gram=gram,
-        linear=linear,
-        piece=piece,
-        interval=np.ascontiguousarray(interval),
-        boxes=tree_boxes,
-        range=tree_range,
+        piece=np.concatenate([arcs.piece for arcs in groups])[order],
+        interval=np.ascontiguousarray(np.concatenate([arcs.interval for arcs in groups])[order]),
+        following=following,
+        arcs=_rows(degree[order], start, end, power, bernstein),
+        tree=tree,
+        boxes=node_boxes,
+        range=ranges,
         chain=chain,
     )
 
 
-def following_in_loop(loop: Ints) -> Ints:
-    """The arclet after each one, given each one's loop, in order; the last one's is the first."""
-    first = np.flatnonzero(np.diff(loop, prepend=-1))
-    result = np.arange(1, len(loop) + 1)
-    result[np.append(first[1:], len(loop)) - 1] = first
+def _rows(degree: Ints, start: Floats, end: Floats, power: Floats, bernstein: Floats) -> Floats:
+    """The rows of `Arclets.arcs`."""
+    most = power.shape[1] - 1
+    rows = np.zeros((len(degree), 8 * (most + 1)))
+    rows[:, 0], rows[:, 1:3], rows[:, 3:5] = degree, end, start
+    for d in np.unique(degree):
+        chosen = degree == d
+        rows[chosen, 5 : 5 + 2 * d] = power[chosen, 1 : d + 1].reshape(-1, 2 * d)
+        table = bernstein[chosen, :, : 2 * d + 1].reshape(-1, 3 * (2 * d + 1))
+        rows[chosen, 5 + 2 * d : 5 + 2 * d + table.shape[1]] = table
+    return rows
+
+
+def _near_ones_together(start: Floats, label: Ints) -> Ints:
+    """A rank for each run, along the Z-shaped curve through the middles of their first points."""
+    count = int(label.max()) + 1
+    if count == 1:
+        return np.zeros(1, dtype=np.int64)
+    total = np.zeros((count, 3))
+    np.add.at(total, label, np.column_stack([start, np.ones(len(start))]))
+    middle = total[:, :2] / total[:, 2:]
+    low, high = middle.min(axis=0), middle.max(axis=0)
+    lattice = (middle - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 65535.0
+    cells = lattice.astype(np.int64)
+    key = np.zeros(count, dtype=np.int64)
+    for bit in range(16):
+        key |= ((cells[:, 0] >> bit) & 1) << (2 * bit) | ((cells[:, 1] >> bit) & 1) << (2 * bit + 1)
+    rank = np.empty(count, dtype=np.int64)
+    rank[np.argsort(key, kind="stable")] = np.arange(count)
+    return rank
+
+
+def _following(label: Ints, closed: Bools) -> Ints:
+    """The arclet after each one, given the runs that they lie in, in order; -1 at an open end."""
+    first = np.flatnonzero(np.diff(label, prepend=-1))
+    result = np.arange(1, len(label) + 1)
+    result[np.append(first[1:], len(label)) - 1] = np.where(closed[label[first]], first, -1)
     return result
 
 
-def _cut(arcs: Floats, piece: Ints) -> tuple[Floats, Ints, Floats]:
-    """Split pieces of one degree: y-monotone first, then thin. Returns arcs, piece, interval."""
-    interval = np.broadcast_to([0.0, 1.0], (len(arcs), 2)).copy()
-    if arcs.shape[1] == 2:
-        return arcs, piece, interval
-    done = []
-    todo = (arcs, piece, interval)
-    for _ in range(_TURN_HALVINGS):
-        turns = _sign_changes(np.diff(todo[0][:, :, 1], axis=1))
-        done.append(_take(todo, turns == 0))
-        done.append(_split(_take(todo, turns == 1), None))
-        todo = _split(_take(todo, turns > 1), 0.5)
-        if len(todo[0]) == 0:
-            break
-    done.append(todo)
-    todo = _join(done)
+def _cut(arcs: Arcs) -> Arcs:
+    """Split pieces of one degree: where x or y turns first, then until they are thin."""
+    if arcs.control.shape[1] == 2:
+        return arcs
+    noise = _NO_STEP * float(np.abs(arcs.control).max())
+    for axis in (0, 1):
+        arcs = _split_turns(arcs, axis, noise)
     done = []
     for _ in range(_HALVINGS):
-        thick = _bulge(todo[0]) > _BULGE
-        done.append(_take(todo, ~thick))
-        todo = _split(_take(todo, thick), 0.5)
-        if len(todo[0]) == 0:
+        thick = _bulge(arcs.control) > _BULGE
+        done.append(_take(arcs, ~thick))
+        arcs = split(_take(arcs, thick), 0.5)
+        if len(arcs.control) == 0:
             break
-    done.append(todo)
-    return _join(done)
+    return _join([*done, arcs])
 
 
-Cut = tuple[Floats, Ints, Floats]
+def _split_turns(arcs: Arcs, axis: int, noise: float) -> Arcs:
+    """Split so that one coordinate is monotone along every arc."""
+    done = []
+    for _ in range(_TURN_HALVINGS):
+        steps = np.diff(arcs.control[:, :, axis], axis=1)
+        turns = _sign_changes(np.where(np.abs(steps) <= noise, 0.0, steps))
+        done.append(_take(arcs, turns == 0))
+        single = _take(arcs, turns == 1)
+        if len(single.control):
+            done.append(split(single, _turn(np.diff(single.control[:, :, axis], axis=1))))
+        arcs = split(_take(arcs, turns > 1), 0.5)
+        if len(arcs.control) == 0:
+            break
+    return _join([*done, arcs])
 
 
-def _take(cut: Cut, chosen: Bools) -> Cut:
-    return cut[0][chosen], cut[1][chosen], cut[2][chosen]
+def _take(arcs: Arcs, chosen: Bools) -> Arcs:
+    return Arcs(arcs.control[chosen], arcs.piece[chosen], arcs.interval[chosen])
 
 
-def _join(cuts: list[Cut]) -> Cut:
-    return (
-        np.concatenate([c[0] for c in cuts]),
-        np.concatenate([c[1] for c in cuts]),
-        np.concatenate([c[2] for c in cuts]),
-    )
+def _join(parts: list[Arcs]) -> Arcs:
+    return Arcs(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def _split(cut: Cut, at: float | None) -> Cut:
-    """Both parts of every arc, cut at the parameter ``at``, or where y turns if that is None."""
-    arcs, piece, interval = cut
-    if len(arcs) == 0:
-        return cut
-    t = np.full(len(arcs), at) if at is not None else _turn(np.diff(arcs[:, :, 1], axis=1))
-    left, right = _halves(arcs, t)
-    middle = interval[:, 0] + t * (interval[:, 1] - interval[:, 0])
-    return (
-        np.concatenate([left, right]),
-        np.concatenate([piece, piece]),
+def split(arcs: Arcs, at: float | Floats) -> Arcs:
+    """Both parts of every arc, all first parts before all second ones, cut at a parameter."""
+    if len(arcs.control) == 0:
+        return arcs
+    t = np.broadcast_to(at, len(arcs.control))
+    middle = arcs.interval[:, 0] + t * (arcs.interval[:, 1] - arcs.interval[:, 0])
+    first, second = np.empty_like(arcs.control), np.empty_like(arcs.control)
+    points = arcs.control
+    last = points.shape[1] - 1
+    for k in range(last + 1):  # de Casteljau
+        first[:, k] = points[:, 0]
+        second[:, last - k] = points[:, -1]
+        points = (1.0 - t)[:, None, None] * points[:, :-1] + t[:, None, None] * points[:, 1:]
+    return Arcs(
+        np.concatenate([first, second]),
+        np.concatenate([arcs.piece, arcs.piece]),
         np.concatenate(
-            [np.column_stack([interval[:, 0], middle]), np.column_stack([middle, interval[:, 1]])]
+            [
+                np.column_stack([arcs.interval[:, 0], middle]),
+                np.column_stack([middle, arcs.interval[:, 1]]),
+            ]
         ),
     )
-
-
-def _halves(arcs: Floats, t: Floats) -> tuple[Floats, Floats]:
-    """De Casteljau at one parameter an arc: the control points of both parts."""
-    t = t.reshape(-1, *([1] * (arcs.ndim - 1)))
-    left, right = np.empty_like(arcs), np.empty_like(arcs)
-    points = arcs
-    last = arcs.shape[1] - 1
-    for k in range(last + 1):
-        left[:, k] = points[:, 0]
-        right[:, last - k] = points[:, -1]
-        points = (1.0 - t) * points[:, :-1] + t * points[:, 1:]
-    return left, right
 
 
 def _turn(slope: Floats) -> Floats:
@@ -190,61 +258,37 @@ def _sign_changes(values: Floats) -> Ints:
 
 
 def _bulge(arcs: Floats) -> Floats:
-    """Largest distance of a control point from the chord, as a share of the chord."""
+    """Largest distance of a control point from the chord's segment, as a share of the chord."""
     chord = arcs[:, -1] - arcs[:, 0]
     length = np.hypot(chord[:, 0], chord[:, 1])
-    offset = arcs[:, 1:-1] - arcs[:, :1]
-    across = np.abs(offset[..., 0] * chord[:, None, 1] - offset[..., 1] * chord[:, None, 0])
-    along = offset[..., 0] * chord[:, None, 0] + offset[..., 1] * chord[:, None, 1]
-    outside = np.maximum(np.maximum(-along, along - length[:, None] ** 2), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.max(across + outside, axis=1, initial=0.0) / length**2
+        ratio = _thickness(arcs) / length
     return np.where(length > 0.0, ratio, np.inf)
 
 
-def _tables(arcs: Floats, degree: int, most: int) -> tuple[Floats, Floats, Floats, Floats]:
-    """Power basis, gram and linear coefficients (padded to degree ``most``), and boxes."""
-    count, d = len(arcs), degree
+def _thickness(arcs: Floats) -> Floats:
+    """Largest distance of a control point from the chord's segment."""
+    chord = arcs[:, -1] - arcs[:, 0]
+    squared = np.maximum(np.sum(chord * chord, axis=1), np.finfo(np.float64).tiny)
+    offset = arcs - arcs[:, :1]
+    share = np.sum(offset * chord[:, None], axis=2) / squared[:, None]
+    rest = offset - np.clip(share, 0.0, 1.0)[..., None] * chord[:, None]
+    return np.asarray(np.hypot(rest[..., 0], rest[..., 1]).max(axis=1))
+
+
+def _tables(arcs: Floats, most: int) -> tuple[Floats, Floats, Floats, Floats]:
+    """Power basis, Bernstein coefficients (n, 3, 2 most + 1), boxes, thickness; padded."""
+    count, d = len(arcs), arcs.shape[1] - 1
     local = arcs - arcs[:, :1]
     power = np.zeros((count, most + 1, 2))
     for k in range(1, d + 1):
         # forward differences: the k-th power coefficient is binom(d, k) times the k-th of them
         power[:, k] = math.comb(d, k) * np.diff(local, n=k, axis=1)[:, 0]
-    gram = np.zeros((count, 2 * most + 1))
-    linear = np.zeros((count, 2 * most + 1, 2))
+    bernstein = np.zeros((count, 3, 2 * most + 1))
     for k in range(2 * d + 1):
         for i in range(max(0, k - d), min(d, k) + 1):
             weight = math.comb(d, i) * math.comb(d, k - i) / math.comb(2 * d, k)
-            gram[:, k] += weight * np.sum(local[:, i] * local[:, k - i], axis=1)
-            linear[:, k] += weight * local[:, i]
+            bernstein[:, :2, k] += weight * local[:, i]
+            bernstein[:, 2, k] += weight * np.sum(local[:, i] * local[:, k - i], axis=1)
     boxes = np.concatenate([arcs.min(axis=1), arcs.max(axis=1)], axis=1)
-    return power, gram, linear, boxes
-
-
-def _tree(boxes: Floats, loop: Ints) -> tuple[Floats, Ints, Ints]:
-    """Preorder tree over the arclets in their order along the curve, made level by level."""
-    count = len(boxes)
-    node = np.zeros(1, dtype=np.int64)
-    first, last = np.zeros(1, dtype=np.int64), np.full(1, count)
-    ranges = np.empty((2 * count - 1, 2), dtype=np.int64)
-    levels = []
-    while len(node):
-        ranges[node] = np.column_stack([first, last])
-        inner = last - first > 1
-        node, first, last = node[inner], first[inner], last[inner]
-        levels.append(node)
-        middle = (first + last) // 2
-        node, first, last = (
-            np.concatenate([node + 1, node + 2 * (middle - first)]),
-            np.concatenate([first, middle]),
-            np.concatenate([middle, last]),
-        )
-    result = np.empty((2 * count - 1, 4))
-    leaves = ranges[:, 1] - ranges[:, 0] == 1
-    result[leaves] = boxes[ranges[leaves, 0]]
-    for node in reversed(levels):
-        right = node + 2 * ((ranges[node, 0] + ranges[node, 1]) // 2 - ranges[node, 0])
-        result[node, :2] = np.minimum(result[node + 1, :2], result[right, :2])
-        result[node, 2:] = np.maximum(result[node + 1, 2:], result[right, 2:])
-    chain = (loop[ranges[:, 0]] == loop[ranges[:, 1] - 1]).astype(np.int64)
-    return result, ranges, chain
+    return power, bernstein, boxes, _thickness(arcs)

@@ -44,6 +44,8 @@ _FUNCTIONS: dict[str, tuple[_Function, _Function, _Function]] = {
     # At zero there is no derivative; the one-sided value keeps Newton steps finite.
     "abs": (np.abs, lambda x: np.copysign(1.0, x), np.zeros_like),
 }
+# Functions of two arguments: the lesser and the greater of both.
+_CHOICES: dict[str, Callable[[Floats, Floats], Floats]] = {"min": np.minimum, "max": np.maximum}
 _CONSTANTS = {"pi": math.pi, "e": math.e, "tau": math.tau}
 _OPERATORS: dict[type[ast.AST], str] = {
     ast.Add: "+",
@@ -119,7 +121,8 @@ def parse_curve(x: str, y: str, t: tuple[float | str, float | str]) -> Parametri
     ----------
     x, y : str
         Numbers, ``t``, ``pi``, ``e``, ``tau``, ``+ - * / ^`` (or ``**``), parentheses, and the
-        functions sin cos tan asin acos atan sinh cosh tanh exp log sqrt abs.
+        functions sin cos tan asin acos atan sinh cosh tanh exp log sqrt abs, and min max of
+        exactly two arguments.
     t : pair of float or str
         Start and stop, as numbers or as formulas without ``t``.
 
@@ -210,7 +213,7 @@ def _convert(node: ast.AST, source: str, depth: int) -> _Node:
             return _CONSTANTS[node.id]
     raise InputError(
         f"not allowed in a formula: {_quote(node, source)}; use numbers, t, pi, e, tau, "
-        f"+ - * / ^ and {' '.join(_FUNCTIONS)}"
+        f"+ - * / ^ and {' '.join([*_FUNCTIONS, 'min(a,b)', 'max(a,b)'])}"
     )
 
 
@@ -225,12 +228,18 @@ def _operation(node: ast.AST) -> tuple[str, list[ast.expr]]:
     if (
         isinstance(node, ast.Call)
         and isinstance(node.func, ast.Name)
-        and node.func.id in _FUNCTIONS
-        and len(node.args) == 1
+        and len(node.args) == _argument_count(node.func.id)
         and not node.keywords
     ):
         return node.func.id, node.args
     return "", []
+
+
+def _argument_count(name: str) -> int:
+    """How many arguments a function takes, or -1 if it is not one of ours."""
+    if name in _FUNCTIONS:
+        return 1
+    return 2 if name in _CHOICES else -1
 
 
 def _finite(number: float, node: ast.AST, source: str) -> float:
@@ -260,6 +269,8 @@ def _value(node: _Node, t: Floats) -> Floats:
     if node.name == "positive":
         return arguments[0]
     left, right = arguments
+    if node.name in _CHOICES:
+        return _CHOICES[node.name](left, right)
     if node.name == "+":
         return left + right
     if node.name == "-":
@@ -289,6 +300,10 @@ def _jet(node: _Node, t: Floats) -> _Jet:
     if node.name == "positive":
         return f
     g = arguments[1]
+    if node.name in _CHOICES:
+        # Where both are equal there may be a corner: the first one's derivatives are one side's.
+        chosen = _CHOICES[node.name](f.value, g.value) == f.value
+        return _Jet(*(np.where(chosen, a, b) for a, b in zip(f, g, strict=True)))
     if node.name == "+":
         return _Jet(f.value + g.value, f.first + g.first, f.second + g.second)
     if node.name == "-":

@@ -86,13 +86,16 @@ _TO_CONTROL = np.linalg.inv(_bernstein(_NODES))
 _TO_CHECKS = _bernstein(_CHECKS) @ _TO_CONTROL
 
 
-def compile_curve(curve: Curve) -> list[Floats]:
+def compile_curve(curve: Curve, *, scale: float = 0.0) -> list[Floats]:
     """Cut a curve into polynomial pieces that agree with it to about 4 ulp.
 
     Parameters
     ----------
     curve : callable with ``start`` and ``stop``
         (n,) parameters to (n, 2) points; smooth but for corners, where its slope may jump.
+    scale : float
+        Taken as the largest coordinate if it is larger than what samples show: for one part of a
+        larger curve, or where a curve goes far within a tiny part of its range.
 
     Returns
     -------
@@ -105,7 +108,7 @@ def compile_curve(curve: Curve) -> list[Floats]:
     InputError
         If the curve is not finite somewhere, or cannot be resolved (jump, infinite slope, noise).
     """
-    tolerance, scale = _tolerance(curve)
+    tolerance, scale = _tolerance(curve, scale)
     ends = np.linspace(curve.start, curve.stop, _FIRST_INTERVALS + 1)
     left, pieces = _refine(curve, ends, tolerance, scale)
     corners = _corners(left, curve)
@@ -121,7 +124,7 @@ def compile_curve(curve: Curve) -> list[Floats]:
     return pieces
 
 
-def _tolerance(curve: Curve) -> tuple[float, float]:
+def _tolerance(curve: Curve, scale: float) -> tuple[float, float]:
     """The error to accept, and the largest coordinate, from samples all over the curve."""
     # Irrational places, so that no sample falls on a corner at a simple fraction of the range.
     places = (np.arange(64) + 0.5 * (math.sqrt(5.0) - 1.0)) / 64.0
@@ -129,7 +132,7 @@ def _tolerance(curve: Curve) -> tuple[float, float]:
     # So short that what an interpolant misses there is rounding and nothing else.
     t = curve.start + width * (0.999 * places[:, None] + _SHORT * _SAMPLES)
     points = _evaluate(curve, t)
-    scale = float(np.max(np.abs(points)))
+    scale = max(scale, float(np.max(np.abs(points))))
     bulge = points - points[:, :1]
     miss = _TO_CHECKS @ bulge[:, : _DEGREE + 1] - bulge[:, _DEGREE + 1 :]
     # One sample of 64 may sit on a corner by chance; the second largest is noise all the same.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,8 +14,10 @@ from numpy.typing import ArrayLike
 from splinesdf._arrays import LARGEST, Floats, Ints, as_points, largest_coordinate
 from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import build_arclets
+from splinesdf.curves.boundary import filled_boundary
 from splinesdf.curves.formula import parse_curve
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
+from splinesdf.curves.nurbs import nurbs_pieces
 from splinesdf.curves.svg_path import parse_path
 from splinesdf.errors import InputError, OpenContourError
 
@@ -28,6 +30,8 @@ _ROUNDING_GAP = 1e-13
 # A gap up to this share of the size is a drawing program's printed digits: it is bridged by a
 # straight piece, so the curve itself stays as drawn. Anything wider is an open contour.
 _PRINTED_GAP = 1e-6
+# Share of the size by which a domain goes beyond the box, if none is given.
+_MARGIN = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +159,92 @@ class Shape:
         return cls.from_pieces([compile_curve(curve)], fill=fill, name=name)
 
     @classmethod
+    def from_formulas(
+        cls,
+        sections: Iterable[tuple[str, str, tuple[float | str, float | str]]],
+        *,
+        fill: str = "nonzero",
+        close: bool = False,
+        name: str = "",
+    ) -> Shape:
+        """One closed curve given by several formulas, each for one part of it.
+
+        Parameters
+        ----------
+        sections : iterable of (x, y, (start, stop))
+            As in `from_formula`. Each section starts where the one before it ended, the first
+            where the last one ended; the parameters of different sections have nothing in common.
+            Make an end of a section wherever the formulas have a corner or bend suddenly.
+        close : bool
+            Close the curve by a straight piece instead of refusing it.
+
+        Raises
+        ------
+        OpenContourError
+            If the sections do not follow one another, or the curve does not end where it starts.
+        InputError
+            If a formula cannot be used; the message names the section.
+        """
+        loop: list[Floats] = []
+        for number, section in enumerate(sections, 1):
+            try:
+                x, y, t = section
+            except (TypeError, ValueError) as error:
+                raise InputError(
+                    f"section {number}: expected (x, y, (start, stop)), got {str(section)[:60]!r}"
+                ) from error
+            try:
+                loop += compile_curve(parse_curve(x, y, t))
+            except InputError as error:
+                raise InputError(f"section {number}: {error}") from error
+        return cls.from_pieces([loop], fill=fill, close=close, name=name)
+
+    @classmethod
+    def from_nurbs(
+        cls,
+        control: ArrayLike,
+        *,
+        degree: SupportsIndex = 3,
+        knots: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
+        periodic: bool = False,
+        fill: str = "nonzero",
+        close: bool = False,
+        name: str = "",
+    ) -> Shape:
+        """One closed B-spline curve, or NURBS curve if there are weights.
+
+        Up to degree 7 without weights the curve is exact, otherwise it is compiled into pieces of
+        degree 7 that agree with it to a few units in the last place.
+
+        Parameters
+        ----------
+        control : array_like, shape (n, 2)
+        degree : int
+            From 1 to 25.
+        knots : array_like, shape (n + degree + 1,), optional
+            Equal steps between repeated ends if not given; see `nurbs_pieces` for other
+            conventions, and for those of periodic curves.
+        weights : array_like, shape (n,), optional
+            Positive; the control points are not multiplied by them.
+        periodic : bool
+            Wrap the control points around to a smooth closed curve.
+        close : bool
+            Close an open curve by a straight piece instead of refusing it.
+
+        Raises
+        ------
+        OpenContourError
+            If the curve does not end where it starts.
+        InputError
+            If the numbers do not make a curve.
+        """
+        pieces = nurbs_pieces(
+            control, degree=degree, knots=knots, weights=weights, periodic=periodic
+        )
+        return cls.from_pieces([pieces], fill=fill, close=close, name=name)
+
+    @classmethod
     def from_points(
         cls, points: ArrayLike, *, smooth: bool = False, fill: str = "nonzero", name: str = ""
     ) -> Shape:
@@ -207,10 +297,28 @@ class Shape:
         xmin, ymin, xmax, ymax = self.box
         return max(xmax - xmin, ymax - ymin)
 
+    def default_domain(self, beyond: float = 0.0) -> tuple[float, float, float, float]:
+        """The box grown by a tenth of the size, and by ``beyond``, on all sides."""
+        xmin, ymin, xmax, ymax = self.box
+        margin = _MARGIN * self.size + beyond
+        return xmin - margin, ymin - margin, xmax + margin, ymax + margin
+
     @cached_property
     def arclets(self) -> Arclets:
-        """The boundary cut into short monotone arcs under a tree of boxes, made on first use."""
+        """All that was drawn, cut into short monotone arcs under a tree, made on first use."""
         return build_arclets(self.control, self.starts, self.loops)
+
+    @cached_property
+    def boundary(self) -> Arclets:
+        """The arcs that separate inside from outside, inside on their left, made on first use.
+
+        Raises
+        ------
+        InputError
+            If nothing is filled: every contour is traced to and fro, or twice under "evenodd".
+        """
+        largest = float(np.abs(self.control).max())
+        return filled_boundary(self.arclets, self.fill == "evenodd", largest)
 
     def piece(self, index: int) -> Floats:
         """Control points of one piece, shape (degree + 1, 2)."""

@@ -1,8 +1,12 @@
-"""Curves given by formulas, as JSON: one ``{"x", "y", "t"}``, or several in ``"loops"``."""
+"""Curves given by formulas, as JSON: one ``{"x", "y", "t"}``, or several in ``"loops"``.
+
+A loop may also be ``{"sections": [...]}``, a list of curves that follow one another.
+"""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 from splinesdf._arrays import Floats
@@ -19,8 +23,10 @@ _FULL_TURN = [0.0, "2*pi"]
 def formula_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
     """The curves of ``{"x": ..., "y": ..., "t": [start, stop]}`` or of a list ``"loops"`` of these.
 
-    ``"t"`` may be missing (0 to 2π); ``"fill"`` and ``"name"`` stand beside ``"x"`` or
-    ``"loops"``. An argument ``fill`` overrules the file's.
+    ``"t"`` may be missing (0 to 2π). Instead of ``"x"`` and ``"y"`` a loop may have a list
+    ``"sections"`` of such curves, each of which starts where the one before it ended. ``"fill"``
+    and ``"name"`` stand beside ``"x"``, ``"sections"`` or ``"loops"``. An argument ``fill``
+    overrules the file's.
     """
     try:
         content = json.loads(text, parse_int=float)  # as integers, long ones would not convert
@@ -33,27 +39,43 @@ def formula_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
     rule = fill if fill is not None else _text(content, "fill", "nonzero")
     name = _text(content, "name", stem)
     if "loops" not in content:
-        loops = [_loop(content, _CURVE + _WHOLE)]
+        loops = [_loop(content, _WHOLE)]
     else:
         _check_keys(content, ("loops", *_WHOLE))
-        entries = content["loops"]
-        if not isinstance(entries, list) or not entries:
-            raise InputError(f'expected "loops" to be a list of curves, got {_kind(entries)}')
-        loops = [_numbered_loop(entry, i + 1) for i, entry in enumerate(entries)]
+        loops = _several(content, "loops", _loop)
     return Shape.from_pieces(loops, fill=rule, close=close, name=name)
 
 
-def _numbered_loop(entry: Any, number: int) -> list[Floats]:
-    try:
-        if not isinstance(entry, dict):
-            raise InputError(f'expected an object with "x" and "y", got {_kind(entry)}')
-        return _loop(entry, _CURVE)
-    except InputError as error:
-        raise InputError(f"loop {number}: {error}") from error
+def _several(
+    content: dict[str, Any],
+    key: str,
+    read: Callable[[dict[str, Any], tuple[str, ...]], list[Floats]],
+) -> list[list[Floats]]:
+    """What ``read`` makes of each entry of a list; errors name the entry by its number."""
+    entries = content[key]
+    if not isinstance(entries, list) or not entries:
+        raise InputError(f'expected "{key}" to be a list of curves, got {_kind(entries)}')
+    result = []
+    for number, entry in enumerate(entries, 1):
+        try:
+            if not isinstance(entry, dict):
+                raise InputError(f'expected an object with "x" and "y", got {_kind(entry)}')
+            result.append(read(entry, ()))
+        except InputError as error:
+            raise InputError(f"{key.removesuffix('s')} {number}: {error}") from error
+    return result
 
 
-def _loop(entry: dict[str, Any], known: tuple[str, ...]) -> list[Floats]:
-    _check_keys(entry, known)
+def _loop(entry: dict[str, Any], beside: tuple[str, ...]) -> list[Floats]:
+    """The pieces of one loop; the keys ``beside`` may stand in its object as well."""
+    if "sections" not in entry:
+        return _curve(entry, beside)
+    _check_keys(entry, ("sections", *beside))
+    return [piece for part in _several(entry, "sections", _curve) for piece in part]
+
+
+def _curve(entry: dict[str, Any], beside: tuple[str, ...]) -> list[Floats]:
+    _check_keys(entry, _CURVE + beside)
     for key in "xy":
         if not isinstance(entry.get(key), str):
             got = _kind(entry[key]) if key in entry else "nothing"

@@ -1,0 +1,52 @@
+"""Points, directions and bends of arclets, for many parameters at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from splinesdf._arrays import Floats, Ints
+from splinesdf._tables import Arclets
+
+
+def points_at(arclets: Arclets, arclet: Ints, t: Floats) -> Floats:
+    """Points of arclets (n,) at parameters (n,), relative to the origin; ends to the last bit."""
+    result = np.zeros((len(arclet), 2))
+    for k in range(arclets.power.shape[1] - 1, 0, -1):
+        result = (result + arclets.power[arclet, k]) * t[:, None]
+    result += arclets.start[arclet]
+    return np.where((t == 1.0)[:, None], arclets.end[arclet], result)
+
+
+def derivatives_at(arclets: Arclets, arclet: Ints, t: Floats) -> tuple[Floats, Floats]:
+    """First and second derivatives of arclets (n,) at parameters (n,), each of shape (n, 2)."""
+    first, second = np.zeros((len(arclet), 2)), np.zeros((len(arclet), 2))
+    for k in range(arclets.power.shape[1] - 1, 0, -1):
+        coefficient = arclets.power[arclet, k]
+        second = second * t[:, None] + k * (k - 1) * coefficient if k > 1 else second
+        first = first * t[:, None] + k * coefficient
+    return first, second
+
+
+def tangents_at(arclets: Arclets, arclet: Ints, t: Floats) -> Floats:
+    """First derivatives, or the chord where the curve stands still for a moment, as in a cusp."""
+    first, _ = derivatives_at(arclets, arclet, t)
+    still = ~np.any(first != 0.0, axis=1)
+    return np.where(still[:, None], (arclets.end - arclets.start)[arclet], first)
+
+
+def end_tangents(arclets: Arclets) -> tuple[Floats, Floats]:
+    """Tangents at the start and at the end of every arclet."""
+    every = np.arange(len(arclets.start))
+    at_start = tangents_at(arclets, every, np.zeros(len(every)))
+    return at_start, tangents_at(arclets, every, np.ones(len(every)))
+
+
+def turns(arclets: Arclets) -> Floats:
+    """By what angle the curve turns to the left where each arclet ends; 0 if it leads nowhere."""
+    leaving, arriving = end_tangents(arclets)
+    leaving = leaving[arclets.following]
+    turn = np.arctan2(
+        arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
+        np.sum(arriving * leaving, axis=1),
+    )
+    return np.where(arclets.following >= 0, turn, 0.0)

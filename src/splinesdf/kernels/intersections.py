@@ -1,0 +1,341 @@
+r"""Where arclets cross or touch: pairs whose boxes overlap, then the roots of one smooth function.
+
+Two arclets whose directions leave a gap can both be seen as graphs over one axis u:
+
+      v                  b     The offset e(u) = v_a(u) - v_b(u) is smooth; where it changes sign
+      |   a    ____---         the arclets cross. It is interpolated by polynomials of degree 7,
+      |     \_/                halved until they fit: the Bernstein coefficients then show roots
+      +-----------------> u    and, if all are within the tolerance, arcs on top of each other.
+
+Ends that lie within the tolerance on the other arclet are found by themselves, so that touching
+in a corner, T-junctions and the ends of a common stretch do not depend on the sign of rounding.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from splinesdf._arrays import Floats, Ints
+from splinesdf._jit import kernel
+from splinesdf._tables import Arclets
+
+# Pairs of nodes that wait to be looked at: a walk of two balanced trees over 2^60 arclets.
+_STACK = 512
+# Halvings of a common stretch. Where a cusp makes the offset as steep as a root, halving goes on
+# until the rest is below the tolerance, 2^-47 of the size.
+_DEPTH = 50
+# An end and the other arclet at the same u may be this many times farther apart than they are:
+# the steepest graph has a slope of 2.4.
+_STEEP = 2.6
+_STEPS = 80
+_LAST_STEP = 1e-9
+_LAST_BISECTION = 1e-16
+
+
+@kernel
+def find_crossings(
+    arclets: Arclets,
+    cone: Floats,
+    tolerance: float,
+    to_control: Floats,
+    to_checks: Floats,
+    nodes: Floats,
+    pair: Ints,
+    at: Floats,
+) -> int:
+    """Fill pairs of arclets and the parameters at which they cross, touch, or begin to coincide.
+
+    Parameters
+    ----------
+    arclets : Arclets
+    cone : ndarray, shape (n, 2)
+        Middle and half width of the directions of each arclet, as angles.
+    tolerance : float
+        Nearer than this counts as touching.
+    to_control, to_checks : ndarray, shapes (8, 8), (7, 8)
+        From the values at the nodes to Bernstein coefficients, and to values between the nodes.
+    nodes : ndarray, shape (15,)
+        Eight places in [0, 1] where a function is interpolated, then the seven between them.
+    pair : ndarray, shape (capacity, 2)
+    at : ndarray, shape (capacity, 2)
+
+    Returns
+    -------
+    int
+        How many were found. If that is more than the capacity, the rest were not stored.
+    """
+    stack = np.empty((_STACK, 2), dtype=np.int64)
+    stack[0, 0] = stack[0, 1] = 0
+    size = 1
+    found = 0
+    while size > 0:
+        size -= 1
+        one, other = stack[size, 0], stack[size, 1]
+        if one != other and not _boxes_meet(arclets.boxes, one, other, tolerance):
+            continue
+        count_one = arclets.range[one, 1] - arclets.range[one, 0]
+        count_other = arclets.range[other, 1] - arclets.range[other, 0]
+        if count_one == 1 and count_other == 1:
+            if one != other:
+                found = _meet(
+                    arclets,
+                    cone,
+                    tolerance,
+                    to_control,
+                    to_checks,
+                    nodes,
+                    arclets.range[one, 0],
+                    arclets.range[other, 0],
+                    pair,
+                    at,
+                    found,
+                )
+            continue
+        if count_one < count_other:
+            one, other = other, one
+        left = one + 1
+        right = one + 2 * (
+            (arclets.range[one, 0] + arclets.range[one, 1]) // 2 - arclets.range[one, 0]
+        )
+        if one == other:
+            stack[size, 0], stack[size, 1] = left, right
+            stack[size + 1, 0], stack[size + 1, 1] = left, left
+            stack[size + 2, 0], stack[size + 2, 1] = right, right
+            size += 3
+        else:
+            stack[size, 0], stack[size, 1] = left, other
+            stack[size + 1, 0], stack[size + 1, 1] = right, other
+            size += 2
+    return found
+
+
+@kernel
+def _boxes_meet(boxes: Floats, one: int, other: int, tolerance: float) -> bool:
+    return bool(
+        boxes[one, 0] <= boxes[other, 2] + tolerance
+        and boxes[other, 0] <= boxes[one, 2] + tolerance
+        and boxes[one, 1] <= boxes[other, 3] + tolerance
+        and boxes[other, 1] <= boxes[one, 3] + tolerance
+    )
+
+
+@kernel
+def _meet(
+    arclets: Arclets,
+    cone: Floats,
+    tolerance: float,
+    to_control: Floats,
+    to_checks: Floats,
+    nodes: Floats,
+    i: int,
+    j: int,
+    pair: Ints,
+    at: Floats,
+    found: int,
+) -> int:
+    """Add the places where arclets i and j meet, other than a joint of theirs."""
+    joined, back = arclets.following[i] == j, arclets.following[j] == i
+    if joined != back:
+        # Seen from the joint, one runs backwards. Directions that have none in common never
+        # lead to the same place again.
+        turn = _remainder(cone[i, 0] - cone[j, 0] + math.pi, 2.0 * math.pi)
+        if abs(turn) > cone[i, 1] + cone[j, 1]:
+            return found
+    arcs = arclets.arcs
+    ux, uy = _axis(cone, i, j)
+    low_i, high_i = _reach(arcs, i, ux, uy)
+    low_j, high_j = _reach(arcs, j, ux, uy)
+    low, high = max(low_i, low_j), min(high_i, high_j)
+    if high < low - tolerance:
+        return found
+    for end in range(4):
+        a, b = (i, j) if end < 2 else (j, i)
+        t = float(end % 2)
+        x, y = _point(arcs, a, t)
+        other_t = _at(arcs, b, ux, uy, x * ux + y * uy)
+        other_x, other_y = _point(arcs, b, other_t)
+        if math.hypot(x - other_x, y - other_y) > _STEEP * tolerance:
+            continue
+        if end < 2:
+            t_i, t_j = t, other_t
+        else:
+            t_i, t_j = other_t, t
+        is_joint = (joined and t_i == 1.0 and t_j == 0.0) or (back and t_i == 0.0 and t_j == 1.0)
+        if not is_joint:
+            found = _add(pair, at, found, i, t_i, j, t_j)
+    if high - low <= tolerance:
+        return found
+    if arcs[i, 0] == 1.0 and arcs[j, 0] == 1.0:
+        at_low, at_high = _offset(arcs, i, j, ux, uy, low), _offset(arcs, i, j, ux, uy, high)
+        if at_low * at_high < 0.0:
+            u = low + (high - low) * at_low / (at_low - at_high)
+            t, s = _at(arcs, i, ux, uy, u), _at(arcs, j, ux, uy, u)
+            found = _add(pair, at, found, i, t, j, s)
+        return found
+    values = np.empty(15)
+    control = np.empty(8)
+    spans = np.empty((_DEPTH + 2, 2))
+    spans[0, 0], spans[0, 1] = low, high
+    size = 1
+    while size > 0:
+        size -= 1
+        low, high = spans[size, 0], spans[size, 1]
+        for k in range(15):
+            values[k] = _offset(arcs, i, j, ux, uy, low + (high - low) * nodes[k])
+        crosses = values[0] * values[7] < 0.0
+        miss = 0.0
+        for k in range(7):
+            guess = 0.0
+            for m in range(8):
+                guess += to_checks[k, m] * values[m]
+            miss = max(miss, abs(values[8 + k] - guess))
+        smallest, largest = np.inf, -np.inf
+        changes = 0
+        last = 0.0
+        for k in range(8):
+            control[k] = 0.0
+            for m in range(8):
+                control[k] += to_control[k, m] * values[m]
+            smallest, largest = min(smallest, control[k]), max(largest, control[k])
+            if control[k] * last < 0.0:
+                changes += 1
+            if control[k] != 0.0:
+                last = control[k]
+        if smallest > 2.0 * miss or largest < -2.0 * miss:
+            continue
+        flat = max(largest, -smallest) + miss <= tolerance
+        fits = miss <= 0.25 * tolerance
+        if flat or (fits and changes <= 1) or high - low <= tolerance or size + 2 > _DEPTH:
+            if crosses:
+                u = 0.5 * (low + high)
+                if not flat:
+                    u = _root(arcs, i, j, ux, uy, low, high)
+                found = _add(
+                    pair, at, found, i, _at(arcs, i, ux, uy, u), j, _at(arcs, j, ux, uy, u)
+                )
+            continue
+        middle = 0.5 * (low + high)
+        spans[size, 0], spans[size, 1] = low, middle
+        spans[size + 1, 0], spans[size + 1, 1] = middle, high
+        size += 2
+    return found
+
+
+@kernel
+def _add(pair: Ints, at: Floats, found: int, i: int, t: float, j: int, s: float) -> int:
+    if found < pair.shape[0]:
+        pair[found, 0], pair[found, 1] = i, j
+        at[found, 0], at[found, 1] = t, s
+    return found + 1
+
+
+@kernel
+def _axis(cone: Floats, i: int, j: int) -> tuple[float, float]:
+    """The unit vector along which both arclets move on: across the widest gap in directions."""
+    # Directions that differ by half a turn are the same here.
+    turn = _remainder(cone[j, 0] - cone[i, 0], math.pi)
+    low = min(-cone[i, 1], turn - cone[j, 1])
+    high = max(cone[i, 1], turn + cone[j, 1])
+    between = abs(turn) - cone[i, 1] - cone[j, 1]
+    if math.pi - (high - low) >= between:
+        angle = cone[i, 0] + 0.5 * (low + high)
+    else:
+        inner = cone[i, 1] + 0.5 * between
+        angle = cone[i, 0] + math.copysign(inner, turn) + 0.5 * math.pi
+    return math.cos(angle), math.sin(angle)
+
+
+@kernel
+def _remainder(value: float, period: float) -> float:
+    """The value less the nearest multiple of the period."""
+    return float(value - period * math.floor(value / period + 0.5))
+
+
+@kernel
+def _reach(arcs: Floats, i: int, ux: float, uy: float) -> tuple[float, float]:
+    start = arcs[i, 3] * ux + arcs[i, 4] * uy
+    end = arcs[i, 1] * ux + arcs[i, 2] * uy
+    return min(start, end), max(start, end)
+
+
+@kernel
+def _point(arcs: Floats, i: int, t: float) -> tuple[float, float]:
+    if t == 1.0:
+        return arcs[i, 1], arcs[i, 2]
+    x = y = 0.0
+    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
+        x = (x + arcs[i, k]) * t
+        y = (y + arcs[i, k + 1]) * t
+    return arcs[i, 3] + x, arcs[i, 4] + y
+
+
+@kernel
+def _at(arcs: Floats, i: int, ux: float, uy: float, u: float) -> float:
+    """The parameter at which arclet i is at u, or the end that is nearer to it."""
+    start = arcs[i, 3] * ux + arcs[i, 4] * uy
+    end = arcs[i, 1] * ux + arcs[i, 2] * uy
+    forward = 1.0 if end >= start else -1.0
+    if (u - start) * forward <= 0.0:
+        return 0.0
+    if (u - end) * forward >= 0.0:
+        return 1.0
+    low, high = 0.0, 1.0
+    t = float((u - start) / (end - start))
+    last = 3 + 2 * int(arcs[i, 0])
+    if last == 5:
+        return t
+    for _ in range(_STEPS):
+        value = slope = 0.0
+        for k in range(last, 3, -2):
+            step = arcs[i, k] * ux + arcs[i, k + 1] * uy
+            slope = slope * t + value + step
+            value = (value + step) * t
+        miss = (start - u) + value
+        if miss * forward < 0.0:
+            low = t
+        else:
+            high = t
+        moved = t - miss / slope if slope != 0.0 else low - 1.0
+        last_step = _LAST_STEP
+        if not low <= moved <= high:
+            moved = 0.5 * (low + high)
+            last_step = _LAST_BISECTION
+        moved_by = abs(moved - t)
+        t = moved
+        if moved_by <= last_step:
+            break
+    return t
+
+
+@kernel
+def _offset(arcs: Floats, i: int, j: int, ux: float, uy: float, u: float) -> float:
+    x, y = _point(arcs, i, _at(arcs, i, ux, uy, u))
+    other_x, other_y = _point(arcs, j, _at(arcs, j, ux, uy, u))
+    return float((y - other_y) * ux - (x - other_x) * uy)
+
+
+@kernel
+def _root(arcs: Floats, i: int, j: int, ux: float, uy: float, low: float, high: float) -> float:
+    """Where the offset is zero, given that it changes sign once: false position and halving."""
+    at_low = _offset(arcs, i, j, ux, uy, low)
+    at_high = _offset(arcs, i, j, ux, uy, high)
+    halve = False
+    for _ in range(_STEPS):
+        u = low - at_low * (high - low) / (at_high - at_low)
+        if halve or not low < u < high:
+            u = 0.5 * (low + high)
+        if not low < u < high:
+            break
+        value = _offset(arcs, i, j, ux, uy, u)
+        width = high - low
+        if value * at_low > 0.0:
+            low, at_low = u, value
+        else:
+            high, at_high = u, value
+        if value == 0.0:
+            return u
+        # One end may stay where it is: then the next step halves.
+        halve = high - low > 0.5 * width
+    return low if abs(at_low) <= abs(at_high) else high

@@ -1,0 +1,114 @@
+"""The side of many points, by the winding number: how often curves cross a ray to the right."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from splinesdf._arrays import Bools, Floats
+from splinesdf._jit import kernel
+from splinesdf._tables import Arclets
+
+_NEWTON_STEPS = 80
+# Newton's last step: its error is about the square of this, so the parameter is good to rounding.
+_LAST_STEP = 1e-9
+# A halving gains one bit, so it goes on to the last one.
+_LAST_BISECTION = 1e-16
+# The walk's stack: a balanced tree over 2^60 arclets is no deeper.
+_STACK = 64
+# Share of the distance within which a neighbor is certain to be on the same side. Rounding in
+# the distance is far below what is left.
+_SURE = 0.999999
+
+
+@kernel
+def fill_inside(
+    arclets: Arclets, points: Floats, distance: Floats, evenodd: bool, inside: Bools
+) -> None:
+    """Fill whether each point is inside, by its winding number and the fill rule.
+
+    Parameters
+    ----------
+    arclets : Arclets
+        All the curves that were drawn, also those that bound nothing.
+    points : ndarray, shape (n, 2)
+        Neighbors one after the other.
+    distance : ndarray, shape (n,)
+        To the boundary of the filled region, or a lower bound. A point nearer to an earlier one
+        than that one's distance is on the same side: no boundary lies between them.
+    evenodd : bool
+        Odd numbers are inside; otherwise all but zero.
+    inside : ndarray of bool, shape (n,)
+    """
+    anchor_x = anchor_y = anchor_squared = 0.0
+    last = False
+    for i in range(points.shape[0]):
+        px, py = points[i, 0], points[i, 1]
+        here = (_SURE * distance[i]) ** 2
+        if (px - anchor_x) ** 2 + (py - anchor_y) ** 2 < anchor_squared:
+            if here > anchor_squared:
+                anchor_x, anchor_y, anchor_squared = px, py, here
+        else:
+            number = _winding(arclets, px, py)
+            last = number % 2 != 0 if evenodd else number != 0
+            anchor_x, anchor_y, anchor_squared = px, py, here
+        inside[i] = last
+
+
+@kernel
+def _winding(arclets: Arclets, px: float, py: float) -> int:
+    """Winding number by the ray in +x; a run of arclets right of the point counts by its ends."""
+    nodes = np.empty(_STACK, dtype=np.int64)
+    count = 0
+    size = 1
+    nodes[0] = 0
+    while size > 0:
+        size -= 1
+        node = nodes[size]
+        if not (
+            arclets.boxes[node, 1] <= py < arclets.boxes[node, 3] and px <= arclets.boxes[node, 2]
+        ):
+            continue
+        first, end = arclets.range[node, 0], arclets.range[node, 1]
+        if px < arclets.boxes[node, 0] and arclets.chain[node] == 1:
+            count += int(arclets.end[end - 1, 1] > py) - int(arclets.start[first, 1] > py)
+        elif end - first == 1:
+            count += _crossing(arclets.arcs, first, px, py)
+        else:
+            nodes[size] = node + 1
+            nodes[size + 1] = node + 2 * ((first + end) // 2 - first)
+            size += 2
+    return count
+
+
+@kernel
+def _crossing(arcs: Floats, i: int, px: float, py: float) -> int:
+    """+1, -1 or 0: how the y-monotone arclet i crosses the ray from the point in +x."""
+    rising = int(arcs[i, 2] > py) - int(arcs[i, 4] > py)
+    if rising == 0:
+        return 0
+    low, high = 0.0, 1.0
+    vy = py - arcs[i, 4]
+    t = vy / (arcs[i, 2] - arcs[i, 4])
+    last = 3 + 2 * int(arcs[i, 0])
+    for _ in range(_NEWTON_STEPS):
+        y = dy = 0.0
+        for k in range(last + 1, 4, -2):
+            dy = dy * t + y + arcs[i, k]
+            y = (y + arcs[i, k]) * t
+        if (y - vy) * rising < 0.0:
+            low = t
+        else:
+            high = t
+        moved = t - (y - vy) / dy if dy != 0.0 else low - 1.0
+        last_step = _LAST_STEP
+        if not low <= moved <= high:
+            moved = 0.5 * (low + high)
+            last_step = _LAST_BISECTION
+        step = abs(moved - t)
+        t = moved
+        if step <= last_step:
+            break
+    x = 0.0
+    for k in range(last, 3, -2):
+        x = (x + arcs[i, k]) * t
+    return rising if x + arcs[i, 3] > px else 0
