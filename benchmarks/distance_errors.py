@@ -82,7 +82,7 @@ def polyline_error(case: Case, count: int) -> tuple[float, int, float]:
     """Largest error beyond the deviation, wrong sides, and the share of points left out."""
     shape, points = case.shape, questions(case.shape, count, 3)
     straight = shape.control.shape[0] == 2 * shape.piece_count
-    deviation = (1e-15 if straight else DEVIATION) * shape.size
+    deviation = DEVIATION * shape.size if not straight else oracles.SNAP * np.abs(points).max()
     expected = oracles.sure_polyline_distance(shape, points, deviation)
     if expected is None:
         raise SystemExit(f"{shape.name} fills nothing")

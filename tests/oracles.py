@@ -20,6 +20,9 @@ import shapely
 
 import splinesdf as ss
 
+# A slit along a slanting line, in decimals, is open by rounding: faces thinner than this share of
+# the largest coordinate are closed. It is what distances of real drawings are good to here.
+SNAP = 1e-13
 # Vertices of a line in the tree: short ones have small boxes, long ones make a small tree.
 _RUN = 8
 
@@ -100,13 +103,21 @@ def is_filled(number: np.ndarray, fill: str) -> np.ndarray:
     return number != 0 if fill == "nonzero" else number % 2 != 0
 
 
-def filled_boundary(rings: Sequence[np.ndarray], fill: str) -> list[np.ndarray]:
+def filled_boundary(
+    rings: Sequence[np.ndarray], fill: str, *, snap: float = 0.0
+) -> list[np.ndarray]:
     """The boundary of what closed polylines fill, as polylines; empty if they fill nothing.
 
     The lines are cut at all crossings and tell apart the faces of the plane; a face is filled
     if the winding number at a point in it is.
+
+    Parameters
+    ----------
+    snap : float
+        Vertices are moved to a grid so fine: faces that are thinner close.
     """
-    noded = shapely.unary_union(shapely.multilinestrings([shapely.linestrings(r) for r in rings]))
+    drawn = shapely.multilinestrings([shapely.linestrings(ring) for ring in rings])
+    noded = shapely.unary_union(drawn, grid_size=snap or None)
     faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
     if len(faces) == 0:
         return []
@@ -117,10 +128,10 @@ def filled_boundary(rings: Sequence[np.ndarray], fill: str) -> list[np.ndarray]:
 
 
 def signed_polyline_distance(
-    rings: Sequence[np.ndarray], fill: str, points: np.ndarray
+    rings: Sequence[np.ndarray], fill: str, points: np.ndarray, *, snap: float = 0.0
 ) -> np.ndarray | None:
     """Signed distance to the boundary of what the polylines fill, None if they fill nothing."""
-    boundary = filled_boundary(rings, fill)
+    boundary = filled_boundary(rings, fill, snap=snap)
     if not boundary:
         return None
     inside = is_filled(winding_number(rings, points), fill)
@@ -135,8 +146,9 @@ def sure_polyline_distance(
     Where contours cross at a small angle, or touch, the filled region's boundary moves by much
     more than the polylines deviate. Those are the places where two finenesses do not agree.
     """
+    snap = SNAP * float(np.abs(shape.control).max())
     coarse, fine = (
-        signed_polyline_distance(polylines(shape, d), shape.fill, points)
+        signed_polyline_distance(polylines(shape, d), shape.fill, points, snap=snap)
         for d in (deviation, deviation / 16.0)
     )
     if coarse is None or fine is None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from splinesdf._arrays import Floats, Ints
 
 
@@ -33,7 +35,8 @@ class Arclets(NamedTuple):
 #     d      end   start   power, from t on    x          y          squares
 # The last three are Bernstein coefficients of degree 2 d: of the arc minus its start (x, y) and
 # of the square of its length, so that |arc - p|^2 has the coefficients
-# squares + |p - start|^2 - 2 (p - start) . (x, y).
+# squares + |p - start|^2 - 2 (p - start) . (x, y). A line has 1 / its squared length in their
+# place.
 #
 # A row of ``tree``: a segment's first point (0, 1), the vector to its second (2, 3), 1 / its
 # squared length, or 0 for a point (4), the radius around it in which all of the node's arclets
@@ -47,6 +50,23 @@ class Cells(NamedTuple):
     levels: int
     starts: Ints  # (4^levels + 2,) cell c has the points starts[c] to before starts[c + 1]
     points: Floats  # (n, 2) along the Z-shaped curve through the cells
+
+
+class Candidates(NamedTuple):
+    """For each cell, nodes of a tree of arclets: what is closest to a point of it is under one."""
+
+    starts: Ints  # (n_cells + 1,) cell c has nodes[starts[c]:starts[c + 1]]
+    nodes: Ints  # the one nearest to the middle of the cell first
+
+
+class PassedOver(NamedTuple):
+    """Arclets that are not looked for."""
+
+    own: Ints  # (n,) for each point one, -1 or an empty array for none
+    within: float  # all that are not farther from the point than this; negative for none
+
+
+NOTHING = PassedOver(np.empty(0, dtype=np.int64), -1.0)
 
 
 class Feet(NamedTuple):

@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Floats, Ints, as_points, positive_tolerance
 from splinesdf._blocks import in_blocks, processors
-from splinesdf._tables import Arclets, Cells, Feet
+from splinesdf._tables import NOTHING, Arclets, Cells, Feet
+from splinesdf.culling import candidates_of_cells
 from splinesdf.curves.geometry import derivatives_at, turns
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
@@ -285,7 +286,7 @@ def _feet(
         at=np.full(count, np.nan),
         farthest=farthest,
     )
-    nearest(boundary, cells, feet)
+    nearest(boundary, cells, candidates_of_cells(boundary, cells), NOTHING, feet)
     finite = slice(0, cells.starts[-1])
     inside = np.zeros(count, dtype=np.bool_)
     fill_inside(outline, cells.points[finite], feet.distance, shape.fill == "evenodd", inside)

@@ -130,6 +130,8 @@ def _rows(degree: Ints, start: Floats, end: Floats, power: Floats, bernstein: Fl
         rows[chosen, 5 : 5 + 2 * d] = power[chosen, 1 : d + 1].reshape(-1, 2 * d)
         table = bernstein[chosen, :, : 2 * d + 1].reshape(-1, 3 * (2 * d + 1))
         rows[chosen, 5 + 2 * d : 5 + 2 * d + table.shape[1]] = table
+    line = degree == 1
+    rows[line, 7] = 1.0 / np.sum(power[line, 1] ** 2, axis=1)
     return rows
 
 
@@ -167,9 +169,13 @@ def _cut(arcs: Arcs) -> Arcs:
     noise = _NO_STEP * float(np.abs(arcs.control).max())
     for axis in (0, 1):
         arcs = _split_turns(arcs, axis, noise)
+    # Two turns in one place, as in a cusp, leave a part between them that is all rounding.
+    whole = (arcs.interval[:, 0] == 0.0) & (arcs.interval[:, 1] == 1.0)
+    arcs = _take(arcs, whole | (np.ptp(arcs.control, axis=1).max(axis=1) > noise))
     done = []
     for _ in range(_HALVINGS):
-        thick = _bulge(arcs.control) > _BULGE
+        size = np.ptp(arcs.control, axis=1).max(axis=1)
+        thick = (_bulge(arcs.control) > _BULGE) & (size > noise)
         done.append(_take(arcs, ~thick))
         arcs = split(_take(arcs, thick), 0.5)
         if len(arcs.control) == 0:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._tables import Arclets
+from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver
 from splinesdf.curves.arclets import Arcs, Runs, assemble, split
 from splinesdf.curves.crossings import control_points, degrees, find_crossings
 from splinesdf.curves.geometry import points_at, tangents_at
@@ -139,8 +139,7 @@ def _sides(
     outline: Arclets, parts: _Parts, evenodd: bool, touching: float
 ) -> tuple[Bools, Bools, Ints, Floats]:
     """Of each chain: whether its left and its right are filled, and another arclet on top of it."""
-    from splinesdf.kernels.nearest import clearance  # Numba loads only when it is used
-    from splinesdf.kernels.winding import fill_inside
+    from splinesdf.kernels.winding import fill_inside  # Numba loads only when it is used
 
     low, high = parts.interval.T
     ends = points_at(outline, parts.arclet, low), points_at(outline, parts.arclet, high)
@@ -152,15 +151,16 @@ def _sides(
     t = low[part] + np.tile(_PLACES, len(longest)) * (high - low)[part]
     place = points_at(outline, parts.arclet[part], t)
     tangent = tangents_at(outline, parts.arclet[part], t)
-    count = len(part)
-    clear, partner, at = np.empty(count), np.empty(count, dtype=np.int64), np.empty(count)
-    clearance(outline, place, parts.arclet[part], 2.0 * touching, clear, partner, at)
+    # What is nearest may lie on top of the chain; what is nearest beyond that does not.
+    near, partner, at = _others(outline, place, parts.arclet[part], -1.0)
+    partner = np.where(near <= 2.0 * touching, partner, -1)
+    clear, _, _ = _others(outline, place, parts.arclet[part], 2.0 * touching)
     # The clearest place of each chain; if possible one where no other passes through.
     crowded = (partner >= 0) | (clear <= _MERGE * touching)
     order = np.lexsort((-clear, crowded, parts.chain[part]))
     best = order[np.flatnonzero(np.diff(parts.chain[part][order], prepend=-1))]
     normal = np.column_stack([-tangent[best, 1], tangent[best, 0]])
-    normal /= np.hypot(normal[:, 0], normal[:, 1])[:, None]
+    normal /= np.maximum(np.hypot(normal[:, 0], normal[:, 1]), np.finfo(np.float64).tiny)[:, None]
     reach = 0.5 * np.minimum(clear[best], np.ptp(outline.boxes[0].reshape(2, 2), axis=0).max())
     sides = []
     for side in (1.0, -1.0):
@@ -170,6 +170,30 @@ def _sides(
         fill_inside(outline, points, np.zeros(len(best)), evenodd, filled)
         sides.append(filled)
     return sides[0], sides[1], partner[best], at[best]
+
+
+def _others(
+    outline: Arclets, points: Floats, own: Ints, within: float
+) -> tuple[Floats, Ints, Floats]:
+    """Distance, arclet and parameter of what is nearest to points on arclets, but for their own.
+
+    And but for what is not farther than ``within``.
+    """
+    from splinesdf.kernels.nearest import nearest  # Numba loads only when it is used
+
+    count = len(points)
+    # One cell a point, with the root of the tree.
+    cells = Cells(np.zeros(4), 0, np.arange(count + 1), points)
+    candidates = Candidates(np.arange(count + 1), np.zeros(count, dtype=np.int64))
+    feet = Feet(
+        distance=np.empty(count),
+        closest=np.empty((count, 2)),
+        arclet=np.empty(count, dtype=np.int64),
+        at=np.empty(count),
+        farthest=np.inf,
+    )
+    nearest(outline, cells, candidates, PassedOver(own, within), feet)
+    return feet.distance, feet.arclet, feet.at
 
 
 def _repeated(

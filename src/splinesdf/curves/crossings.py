@@ -9,7 +9,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets
-from splinesdf.curves.interpolate import _CHECKS, _NODES, _TO_CHECKS, _TO_CONTROL
+from splinesdf.curves.nodes import CHECKS, NODES, TO_CHECKS, TO_CONTROL
 
 # Steps between control points below this share of the arclet's size have no direction: at a
 # cusp they are rounding.
@@ -39,13 +39,13 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
 
     cone = _cones(arclets)
     # Of three checks between each two nodes the middle one will do here: halving finds the rest.
-    nodes = np.concatenate([_NODES, _CHECKS[1::3]])
-    to_checks = _TO_CHECKS[1::3].copy()
+    nodes = np.concatenate([NODES, CHECKS[1::3]])
+    to_checks = TO_CHECKS[1::3].copy()
     capacity = _CAPACITY
     while True:
         pair, at = np.empty((capacity, 2), dtype=np.int64), np.empty((capacity, 2))
         count = intersections.find_crossings(
-            arclets, cone, tolerance, _TO_CONTROL, to_checks, nodes, pair, at
+            arclets, cone, tolerance, TO_CONTROL, to_checks, nodes, pair, at
         )
         if count <= capacity:
             return Crossings(pair[:count], at[:count])

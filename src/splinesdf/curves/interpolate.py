@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Bools, Floats, as_points, largest_coordinate
+from splinesdf.curves.nodes import DEGREE, NODES, SAMPLES, TO_CHECKS, TO_CONTROL
 from splinesdf.errors import InputError
 
-_DEGREE = 7
 # Agreement asked for, in units in the last place of the largest coordinate. Smaller: rounding in
 # the formula itself is chased in vain. Larger: error that the exact distance would inherit.
 _ULPS = 4.0
@@ -64,26 +64,6 @@ class Curve(Protocol):
 
     def __call__(self, t: Floats) -> Floats:
         """Points at the parameters: (n,) -> (n, 2)."""
-
-
-# Chebyshev nodes stretched so that the outer two are the ends: ends come out exact, and the error
-# is half that of the Chebyshev-Lobatto points.
-_NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 16, 2) / 16) / math.cos(math.pi / 16)
-_NODES[0], _NODES[-1] = 0.0, 1.0
-# Three checks between each two nodes, where an interpolant is worst.
-_CHECKS = np.concatenate([a + (b - a) * np.array([0.21, 0.5, 0.79]) for a, b in pairwise(_NODES)])
-_SAMPLES = np.concatenate([_NODES, _CHECKS])
-
-
-def _bernstein(t: Floats) -> Floats:
-    """Values of the Bernstein polynomials of degree 7, shape (n, 8)."""
-    k = np.arange(_DEGREE + 1)
-    binomial = np.array([math.comb(_DEGREE, int(i)) for i in k], dtype=np.float64)
-    return np.asarray(binomial * t[:, None] ** k * (1.0 - t[:, None]) ** (_DEGREE - k))
-
-
-_TO_CONTROL = np.linalg.inv(_bernstein(_NODES))
-_TO_CHECKS = _bernstein(_CHECKS) @ _TO_CONTROL
 
 
 def compile_curve(curve: Curve, *, scale: float = 0.0) -> list[Floats]:
@@ -130,11 +110,11 @@ def _tolerance(curve: Curve, scale: float) -> tuple[float, float]:
     places = (np.arange(64) + 0.5 * (math.sqrt(5.0) - 1.0)) / 64.0
     width = curve.stop - curve.start
     # So short that what an interpolant misses there is rounding and nothing else.
-    t = curve.start + width * (0.999 * places[:, None] + _SHORT * _SAMPLES)
+    t = curve.start + width * (0.999 * places[:, None] + _SHORT * SAMPLES)
     points = _evaluate(curve, t)
     scale = max(scale, float(np.max(np.abs(points))))
     bulge = points - points[:, :1]
-    miss = _TO_CHECKS @ bulge[:, : _DEGREE + 1] - bulge[:, _DEGREE + 1 :]
+    miss = TO_CHECKS @ bulge[:, : DEGREE + 1] - bulge[:, DEGREE + 1 :]
     # One sample of 64 may sit on a corner by chance; the second largest is noise all the same.
     noise = _NOISE_RESERVE * float(np.sort(np.max(np.abs(miss), axis=(1, 2)))[-2])
     ulp = float(np.finfo(np.float64).eps) * scale
@@ -160,17 +140,17 @@ def _refine(
     pieces: list[Floats] = []
     while len(intervals):
         left, right = intervals[:, :1], intervals[:, 1:]
-        t = left + (right - left) * _SAMPLES
-        t[:, _DEGREE] = intervals[:, 1]
+        t = left + (right - left) * SAMPLES
+        t[:, DEGREE] = intervals[:, 1]
         points = _evaluate(curve, t)
-        first, last = points[:, :1], points[:, _DEGREE : _DEGREE + 1]
+        first, last = points[:, :1], points[:, DEGREE : DEGREE + 1]
         # Interpolating the difference to the chord keeps rounding in proportion to the bulge.
-        bulge = points - (first + (last - first) * _SAMPLES[:, None])
+        bulge = points - (first + (last - first) * SAMPLES[:, None])
         straight = np.max(np.abs(bulge), axis=(1, 2)) <= tolerance
-        inner = np.arange(_DEGREE + 1) / _DEGREE
-        control = first + (last - first) * inner[:, None] + _TO_CONTROL @ bulge[:, : _DEGREE + 1]
+        inner = np.arange(DEGREE + 1) / DEGREE
+        control = first + (last - first) * inner[:, None] + TO_CONTROL @ bulge[:, : DEGREE + 1]
         control[:, 0], control[:, -1] = first[:, 0], last[:, 0]
-        miss = _TO_CHECKS @ bulge[:, : _DEGREE + 1] - bulge[:, _DEGREE + 1 :]
+        miss = TO_CHECKS @ bulge[:, : DEGREE + 1] - bulge[:, DEGREE + 1 :]
         error = np.max(np.abs(miss), axis=(1, 2))
         good = straight | (error <= tolerance)
         done.append(intervals[good])
@@ -197,7 +177,7 @@ def _check_progress(intervals: Floats, good: Bools, count: int, narrowest: float
 
 def _split(intervals: Floats, error: Floats, tolerance: float, scale: float) -> Floats:
     """Each interval in as many equal parts as its error asks for."""
-    foreseen = np.ceil(_FORESIGHT * (error / tolerance) ** (1.0 / (_DEGREE + 1)))
+    foreseen = np.ceil(_FORESIGHT * (error / tolerance) ** (1.0 / (DEGREE + 1)))
     parts = np.where(error < _FORESEEN * scale, np.clip(foreseen, 2, _MOST_PARTS), 2).astype(int)
     result = []
     for count in np.unique(parts):
@@ -260,9 +240,9 @@ def compile_arc(
     half = 0.5 * sweep / count
     # One piece about the angle 0, as the difference to (1, 0) so that rounding stays small;
     # all others are it, turned. Compiling each arc anew would cost ten times as much.
-    angles = half * (2.0 * _NODES - 1.0)
-    across = _TO_CONTROL @ (-2.0 * np.sin(0.5 * angles) ** 2)
-    along = _TO_CONTROL @ np.sin(angles)
+    angles = half * (2.0 * NODES - 1.0)
+    across = TO_CONTROL @ (-2.0 * np.sin(0.5 * angles) ** 2)
+    along = TO_CONTROL @ np.sin(angles)
     middle, x, y = as_points(centre), as_points(x_axis), as_points(y_axis)
     steps = start_angle + half * np.arange(2 * count + 1)  # ends and middles in turn
     outward = np.cos(steps)[:, None] * x + np.sin(steps)[:, None] * y

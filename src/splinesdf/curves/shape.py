@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,25 +10,19 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import LARGEST, Floats, Ints, as_points, largest_coordinate
+from splinesdf._arrays import Floats, Ints, as_points
 from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.boundary import filled_boundary
 from splinesdf.curves.formula import parse_curve
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
+from splinesdf.curves.loops import closed_loops
 from splinesdf.curves.nurbs import nurbs_pieces
 from splinesdf.curves.svg_path import parse_path
-from splinesdf.errors import InputError, OpenContourError
+from splinesdf.errors import InputError
 
 Fill = Literal["nonzero", "evenodd"]
 
-# Neighbouring pieces meet to rounding; a gap up to this share of the shape's largest
-# coordinate is closed by moving an end point by that much. Larger: real gaps would vanish unseen.
-# Smaller: the ends of compiled arcs, good to a few ulp, would be called open.
-_ROUNDING_GAP = 1e-13
-# A gap up to this share of the size is a drawing program's printed digits: it is bridged by a
-# straight piece, so the curve itself stays as drawn. Anything wider is an open contour.
-_PRINTED_GAP = 1e-6
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
 
@@ -96,32 +89,7 @@ class Shape:
             the coordinates, nothing is left, or ``fill`` is unknown.
         """
         rule = _fill_rule(fill)
-        arrays = [[_as_control(piece) for piece in loop] for loop in loops]
-        if not any(arrays):
-            raise InputError("expected at least one closed curve, got none")
-        every = np.concatenate([piece for loop in arrays for piece in loop])
-        if not np.isfinite(every).all():
-            raise InputError("expected finite coordinates, got NaN or infinity")
-        largest = largest_coordinate(every)
-        size = float(np.max(np.ptp(every, axis=0)))
-        if size == 0.0:
-            raise InputError("expected a curve that encloses something, got a single point")
-        if size < 1.0 / LARGEST:
-            raise InputError(
-                f"expected a size of at least {1.0 / LARGEST:g}, got {size:.3g}: use another unit"
-            )
-        if size < 1e-9 * largest:
-            raise InputError(
-                f"the shape's size {size:.3g} is lost beside its coordinates of {largest:.3g}: "
-                f"move it nearer to the origin"
-            )
-        closed = []
-        for number, loop in enumerate(arrays):
-            pieces = _closed_loop(loop, number, size=size, largest=largest, close=close)
-            if pieces:
-                closed.append(pieces)
-        if not closed:
-            raise InputError("expected a curve that encloses something, got only points")
+        closed = closed_loops(loops, close=close)
         flat = [piece for loop in closed for piece in loop]
         return cls(
             control=np.concatenate(flat),
@@ -361,38 +329,3 @@ def _fill_rule(fill: str) -> Fill:
     if fill == "evenodd":
         return "evenodd"
     raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r}")
-
-
-def _as_control(piece: ArrayLike) -> Floats:
-    control = as_points(piece)
-    if control.ndim != 2 or len(control) < 2:
-        raise InputError(
-            f"expected a piece's control points of shape (degree + 1, 2), got {control.shape}"
-        )
-    return control
-
-
-def _closed_loop(
-    loop: list[Floats], number: int, *, size: float, largest: float, close: bool
-) -> list[Floats]:
-    """The loop's pieces, none of length zero, each starting exactly where the last one ended."""
-    pieces = [piece.copy() for piece in loop if np.any(piece != piece[0])]
-    result: list[Floats] = []
-    for index, piece in enumerate(pieces):
-        result.append(piece)
-        last = index + 1 == len(pieces)
-        following = pieces[0] if last else pieces[index + 1]
-        gap = math.dist(piece[-1], following[0])
-        if gap <= _ROUNDING_GAP * largest:
-            following[0] = piece[-1]
-        elif gap <= _PRINTED_GAP * size or (last and close):
-            result.append(np.array([piece[-1], following[0]]))
-        else:
-            end, start = piece[-1], following[0]
-            advice = "close it, or ask for it to be closed" if last else "its pieces must join"
-            raise OpenContourError(
-                f"expected closed contours; contour {number + 1} ends at "
-                f"({end[0]:.6g}, {end[1]:.6g}) but {'starts' if last else 'goes on'} at "
-                f"({start[0]:.6g}, {start[1]:.6g}): {advice}"
-            )
-    return result

@@ -184,7 +184,8 @@ def _meet(
         low, high = spans[size, 0], spans[size, 1]
         for k in range(15):
             values[k] = _offset(arcs, i, j, ux, uy, low + (high - low) * nodes[k])
-        crosses = values[0] * values[7] < 0.0
+        # A zero where two halves meet belongs to one of them.
+        crosses = (values[0] < 0.0) != (values[7] < 0.0)
         miss = 0.0
         for k in range(7):
             guess = 0.0
@@ -323,6 +324,8 @@ def _root(arcs: Floats, i: int, j: int, ux: float, uy: float, low: float, high: 
     at_high = _offset(arcs, i, j, ux, uy, high)
     halve = False
     for _ in range(_STEPS):
+        if at_low == 0.0 or at_high == 0.0:
+            break
         u = low - at_low * (high - low) / (at_high - at_low)
         if halve or not low < u < high:
             u = 0.5 * (low + high)
@@ -330,12 +333,10 @@ def _root(arcs: Floats, i: int, j: int, ux: float, uy: float, low: float, high: 
             break
         value = _offset(arcs, i, j, ux, uy, u)
         width = high - low
-        if value * at_low > 0.0:
+        if (value < 0.0) == (at_low < 0.0):
             low, at_low = u, value
         else:
             high, at_high = u, value
-        if value == 0.0:
-            return u
         # One end may stay where it is: then the next step halves.
         halve = high - low > 0.5 * width
     return low if abs(at_low) <= abs(at_high) else high

@@ -8,8 +8,8 @@ For a point p and an arclet c of degree d, D(t) = |c(t) - p|^2 is a Bernstein po
   minimum is unique and a bracketed Newton finds it; with more, D is halved. D is flat to rounding
   where the point is the center of a circular arc: there any parameter is right.
 
-Points come sorted into the cells of a quadtree. A cell inherits the nodes of its parent that can
-be closest to some point of it (`_cull`), so that a point starts its walk from a few of them.
+Points come sorted into cells, and the nodes of the tree that can be closest to some point of a
+cell are known (`culling`), so that a point starts its walk from a few of them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
-from splinesdf._tables import Arclets, Cells, Feet, Scratch
+from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver, Scratch
 
 # Rounding in a coefficient of D, as a multiple of |p - start|^2 + |arc|^2: about three roundings
 # an operation over sums of at most 15 terms. Too small: a true minimum may be pruned by noise;
@@ -35,17 +35,22 @@ _LAST_BISECTION = 1e-16
 _STEPS = 80
 # The walk's stack: a balanced tree over 2^60 arclets is no deeper, and a cell's own nodes.
 _STACK = 128
-# Nodes that a cell keeps at most. More: the walk of each point starts lower; fewer: less memory.
-_KEPT = 48
+# Arclets of a cell that are tried one after the other without a walk. More: cells near the medial
+# axis take this way too, but try more arclets in vain.
+_FEW = 4
+# Straight arclets that are tried one after the other at the bottom of the tree of a polygon.
+_LINES = 8
 # A bound that the distance is compared with is raised by this share, so that rounding in it
 # cannot hide the minimum.
 _SLACK = 1.0 + 1e-12
-# Cells hold a node rather than its children once its segment is this many cell sides long.
-_NODE_SIZE = 2.0
+# And by this share of the largest coordinate, the rounding in points of the curve.
+_GRAIN = 16 * 2.220446049250313e-16
 
 
 @kernel
-def nearest(arclets: Arclets, cells: Cells, feet: Feet) -> None:
+def nearest(
+    arclets: Arclets, cells: Cells, candidates: Candidates, passed_over: PassedOver, feet: Feet
+) -> None:
     """Fill the closest point of each point of the cells.
 
     Parameters
@@ -53,52 +58,49 @@ def nearest(arclets: Arclets, cells: Cells, feet: Feet) -> None:
     arclets : Arclets
     cells : Cells
         Of points relative to ``arclets.origin``; finite where a cell holds them.
+    candidates : Candidates
+        Of these cells.
+    passed_over : PassedOver
     feet : Feet
         Filled. A point farther than ``feet.farthest`` from the curve gets infinity and arclet -1.
     """
     tree, arcs = arclets.tree, arclets.arcs
     scratch = _scratch(arcs)
-    # What the cell of each level around the current one keeps: level 0 is the whole plane.
-    kept = np.zeros((cells.levels + 2, _KEPT), dtype=np.int64)
-    kept_bounds = np.zeros((cells.levels + 2, _KEPT))
-    count = np.ones(cells.levels + 2, dtype=np.int64)
-    last_cell = -1
-    limit = feet.farthest * _SLACK
+    # Rounding in a distance next to the curve.
+    grain = _GRAIN * np.abs(arclets.boxes[0]).max()
+    limit = feet.farthest * _SLACK + grain
+    alone = passed_over.own.shape[0] > 0
+    own = -1
+    ignored = passed_over.within * abs(passed_over.within)
     for cell in range(cells.starts.shape[0] - 1):
         first, end = cells.starts[cell], cells.starts[cell + 1]
-        if first == end:
-            continue
-        level = 0
-        # The last cell is all that is outside the others; a single point is no help to itself.
-        if cell < cells.starts.shape[0] - 2 and end - first > 1:
-            level = cells.levels + 1
-            for around in range(_shared(last_cell, cell, cells.levels), level):
-                x, y, reach = _cell(cells, cell, around)
-                parent = kept[around, : count[around]]
-                count[around + 1] = _cull(
-                    tree,
-                    arcs,
-                    x,
-                    y,
-                    reach,
-                    parent,
-                    kept[around + 1],
-                    kept_bounds[around + 1],
-                    scratch,
-                )
-            last_cell = cell
+        kept, count = candidates.starts[cell], candidates.starts[cell + 1] - candidates.starts[cell]
+        quick = not alone and _prepare(
+            tree, arcs, cells.points[first:end], candidates.nodes[kept:], count, scratch
+        )
         best = limit
         last_x = last_y = last_distance = 0.0
         for i in range(first, end):
             px, py = cells.points[i, 0], cells.points[i, 1]
-            if i > first:
-                # The distance is 1-Lipschitz. The slack keeps the bound above the true minimum.
-                step = math.sqrt((px - last_x) ** 2 + (py - last_y) ** 2)
-                best = min((last_distance + step) * _SLACK, limit)
-            for j in range(count[level]):
-                # nearest ones last, on top of the stack
-                scratch.nodes[j] = kept[level, count[level] - 1 - j]
-            distance, found, t = _search(tree, arcs, px, py, best, count[level], scratch)
+            if alone:
+                own = passed_over.own[i]
+            if quick:
+                distance, found, t = _nearest_of_few(tree, arcs, px, py, limit, count, scratch)
+            else:
+                if i > first and not alone:
+                    # The distance is 1-Lipschitz; what is added is for rounding.
+                    step = math.sqrt((px - last_x) ** 2 + (py - last_y) ** 2)
+                    best = min((last_distance + step) * _SLACK + grain, limit)
+                while True:
+                    for j in range(count):
+                        # nearest ones last, on top of the stack
+                        scratch.nodes[j] = candidates.nodes[kept + count - 1 - j]
+                    distance, found, t = _search(
+                        tree, arcs, px, py, best, count, own, ignored, scratch
+                    )
+                    if found >= 0 or best == limit:
+                        break
+                    best = limit  # rounding hid the minimum from the neighbor's bound
             feet.arclet[i], feet.at[i] = found, t
             if found < 0:
                 feet.distance[i] = feet.closest[i, 0] = feet.closest[i, 1] = np.inf
@@ -110,58 +112,83 @@ def nearest(arclets: Arclets, cells: Cells, feet: Feet) -> None:
 
 
 @kernel
-def clearance(
-    arclets: Arclets,
-    points: Floats,
-    own: Ints,
-    touching: float,
-    clear: Floats,
-    partner: Ints,
-    at: Floats,
-) -> None:
-    """Fill how far points on arclets are from all other arclets that do not pass through them.
+def _prepare(
+    tree: Floats, arcs: Floats, points: Floats, nodes: Ints, count: int, scratch: Scratch
+) -> bool:
+    """Whether a few arclets are the only candidates and D is convex on each, for all the points.
 
-    Parameters
-    ----------
-    arclets : Arclets
-    points : ndarray, shape (n, 2)
-        Relative to ``arclets.origin``.
-    own : ndarray, shape (n,)
-        The arclet that each lies on.
-    touching : float
-        Other arclets within this distance pass through the point.
-    clear : ndarray, shape (n,)
-    partner, at : ndarray, shape (n,)
-        The first of the arclets through the point and its parameter there, -1 if there is none.
+    If so, fills ``scratch.nodes`` with them and ``scratch.spans`` with their derivatives at the
+    end. D is convex if second differences of its coefficients are positive; they are linear in
+    the point, so it is enough to know them for one point and how far the others are.
     """
-    tree, arcs = arclets.tree, arclets.arcs
-    scratch = _scratch(arcs)
-    nodes = scratch.nodes
-    for i in range(points.shape[0]):
-        px, py = points[i, 0], points[i, 1]
-        best = np.inf
-        partner[i], at[i] = -1, np.nan
-        nodes[0] = 0
-        size = 1
-        while size > 0:
-            size -= 1
-            node = nodes[size]
-            if _capsule_distance(tree, node, px, py) > best:
-                continue
-            first, end = int(tree[node, 6]), int(tree[node, 7])
-            if end - first > 1:
-                left, right = node + 1, node + 2 * ((first + end) // 2 - first)
-                nodes[size], nodes[size + 1] = left, right
-                if _capsule_distance(tree, left, px, py) < _capsule_distance(tree, right, px, py):
-                    nodes[size], nodes[size + 1] = right, left
-                size += 2
-            elif first != own[i]:
-                squared, t = _closest_on(arcs, first, px, py, best * best, scratch)
-                if squared > touching * touching:
-                    best = min(best, math.sqrt(squared))
-                elif partner[i] < 0 or first < partner[i]:
-                    partner[i], at[i] = first, t
-        clear[i] = best
+    if count > _FEW:
+        return False
+    x, y = points[0, 0], points[0, 1]
+    reach = 0.0
+    for k in range(points.shape[0]):
+        reach = max(reach, (points[k, 0] - x) ** 2 + (points[k, 1] - y) ** 2)
+    reach = math.sqrt(reach)
+    for j in range(count):
+        node = nodes[j]
+        i = int(tree[node, 6])
+        if int(tree[node, 7]) - i > 1:
+            return False
+        scratch.nodes[j] = node
+        degree = int(arcs[i, 0])
+        if degree == 1:
+            continue
+        n = 2 * degree
+        vx, vy = x - arcs[i, 3], y - arcs[i, 4]
+        noise = _NOISE * (vx * vx + vy * vy + arcs[i, 7 + 4 * n])
+        for k in range(5 + n, 4 + 2 * n):
+            bend_x = arcs[i, k] - 2.0 * arcs[i, k + 1] + arcs[i, k + 2]
+            at = k + n + 1
+            bend_y = arcs[i, at] - 2.0 * arcs[i, at + 1] + arcs[i, at + 2]
+            at += n + 1
+            bend = arcs[i, at] - 2.0 * arcs[i, at + 1] + arcs[i, at + 2]
+            bend -= 2.0 * (vx * bend_x + vy * bend_y)
+            if bend <= 4.0 * noise + 2.0 * reach * math.sqrt(bend_x * bend_x + bend_y * bend_y):
+                return False
+        dx = dy = 0.0
+        for k in range(degree):
+            dx += (k + 1) * arcs[i, 5 + 2 * k]
+            dy += (k + 1) * arcs[i, 6 + 2 * k]
+        scratch.spans[j, 0], scratch.spans[j, 1] = dx, dy
+    return True
+
+
+@kernel
+def _nearest_of_few(
+    tree: Floats, arcs: Floats, px: float, py: float, best: float, count: int, scratch: Scratch
+) -> tuple[float, int, float]:
+    """As `_search`, among the arclets that `_prepare` found to be the only candidates."""
+    found = -1
+    found_at = 0.0
+    limited = best < np.inf
+    for j in range(count):
+        node = scratch.nodes[j]
+        if (j > 0 or limited) and _capsule_distance(tree, node, px, py) > best:
+            continue
+        i = int(tree[node, 6])
+        vx, vy = px - arcs[i, 3], py - arcs[i, 4]
+        if arcs[i, 0] == 1.0:
+            squared, t = _closest_on_line(arcs, i, px, py)
+        else:
+            at_start = -(vx * arcs[i, 5] + vy * arcs[i, 6])
+            at_end = (arcs[i, 1] - px) * scratch.spans[j, 0]
+            at_end += (arcs[i, 2] - py) * scratch.spans[j, 1]
+            if at_start >= 0.0:
+                t = 0.0
+            elif at_end <= 0.0:
+                t = 1.0
+            else:
+                start = at_start / (at_start - at_end)
+                t = _foot(arcs, i, px, py, 0.0, 1.0, start)
+            squared = _squared(arcs, i, t, px, py)
+        value = math.sqrt(squared)
+        if value < best or (found < 0 and value <= best):
+            best, found, found_at = value, i, t
+    return best, found, found_at
 
 
 @kernel
@@ -175,103 +202,25 @@ def _scratch(arcs: Floats) -> Scratch:
 
 
 @kernel
-def _shared(one: int, other: int, levels: int) -> int:
-    """How many cells around a finest one, from the root on, are around the other one as well."""
-    if one < 0:
-        return 0
-    difference = one ^ other
-    shared = levels + 1
-    while difference > 0:
-        difference >>= 2
-        shared -= 1
-    return shared
-
-
-@kernel
-def _cell(cells: Cells, cell: int, level: int) -> tuple[float, float, float]:
-    """Center and half diagonal of the cell of a level in which a finest cell lies."""
-    code = cell >> (2 * (cells.levels - level))
-    column = row = 0
-    for bit in range(level):
-        column |= ((code >> (2 * bit)) & 1) << bit
-        row |= ((code >> (2 * bit + 1)) & 1) << bit
-    scale = 0.5**level
-    width, height = cells.box[2] * scale, cells.box[3] * scale
-    x = cells.box[0] + (column + 0.5) * width
-    y = cells.box[1] + (row + 0.5) * height
-    return x, y, 0.5 * math.sqrt(width * width + height * height) * _SLACK
-
-
-@kernel
-def _cull(
+def _search(
     tree: Floats,
     arcs: Floats,
-    x: float,
-    y: float,
-    reach: float,
-    parent: Ints,
-    kept: Ints,
-    kept_bounds: Floats,
+    px: float,
+    py: float,
+    best: float,
+    size: int,
+    own: int,
+    ignored: float,
     scratch: Scratch,
-) -> int:
-    """Fill the nodes that can be closest to a point within ``reach`` of (x, y), nearest first.
-
-    With the distance d of (x, y), its closest point at the unit vector m behind it, and a capsule
-    at the distance e in the direction n: at the place moved by v, |v| <= reach, the curve is no
-    farther than d + m.v + |v|^2 / (2 (d - reach)) (second-order bound of the distance to a point),
-    the capsule no nearer than e + n.v (it is convex). So the node can be left if
-    e - d > |m - n| reach + reach^2 / (2 (d - reach)); and always if e - d > 2 reach.
-    """
-    nodes = scratch.nodes
-    size = parent.shape[0]
-    for j in range(size):
-        nodes[j] = parent[size - 1 - j]
-    distance, found, t = _search(tree, arcs, x, y, np.inf, size, scratch)
-    fx, fy = _point(arcs, found, t)
-    mx, my = (x - fx) / distance, (y - fy) / distance
-    far = distance > 1.5 * reach
-    bend = reach * reach / (2.0 * (distance - reach)) if far else 0.0
-    slack = distance * (_SLACK - 1.0)
-    for j in range(size):
-        nodes[j] = parent[j]
-    total = 0
-    while size > 0:
-        size -= 1
-        node = int(nodes[size])
-        wx, wy = _from_axis(tree, node, x, y)
-        axis = math.sqrt(wx * wx + wy * wy)
-        margin = 2.0 * reach
-        if far and axis > 0.0:
-            turn = math.sqrt((mx - wx / axis) ** 2 + (my - wy / axis) ** 2)
-            margin = min(margin, turn * reach + bend)
-        bound = axis - tree[node, 5]
-        if bound > distance + margin + slack:
-            continue
-        first, last = int(tree[node, 6]), int(tree[node, 7])
-        length = abs(tree[node, 2]) + abs(tree[node, 3]) + 2.0 * tree[node, 5]
-        if last - first > 1 and length > _NODE_SIZE * reach and size + total + 2 < _KEPT:
-            nodes[size] = node + 1
-            nodes[size + 1] = node + 2 * ((first + last) // 2 - first)
-            size += 2
-            continue
-        place = total
-        while place > 0 and kept_bounds[place - 1] > bound:
-            kept[place], kept_bounds[place] = kept[place - 1], kept_bounds[place - 1]
-            place -= 1
-        kept[place], kept_bounds[place] = node, bound
-        total += 1
-    return total
-
-
-@kernel
-def _search(
-    tree: Floats, arcs: Floats, px: float, py: float, best: float, size: int, scratch: Scratch
 ) -> tuple[float, int, float]:
     """Nearest arclet under some nodes, if any is within ``best``; its distance and parameter.
 
-    The nodes stand in ``scratch.nodes[:size]``, the first to be looked at last.
+    The nodes stand in ``scratch.nodes[:size]``, the first to be looked at last. The arclet ``own``
+    and those whose squared distance is not above ``ignored`` are passed over.
     """
     nodes, bounds = scratch.nodes, scratch.bounds
+    # Lines alone have the narrowest rows. To go through a few is quicker than down the tree.
+    few = _LINES if arcs.shape[1] == 16 else 1
     found = -1
     found_at = 0.0
     for j in range(size):
@@ -282,11 +231,18 @@ def _search(
             continue
         node = nodes[size]
         first, end = int(tree[node, 6]), int(tree[node, 7])
-        if end - first == 1:
-            squared, t = _closest_on(arcs, first, px, py, best * best, scratch)
-            value = math.sqrt(squared)
-            if value < best or (found < 0 and value <= best):
-                best, found, found_at = value, first, t
+        if end - first <= few:
+            smallest = best * best
+            for i in range(first, end):
+                if few > 1:
+                    squared, t = _closest_on_line(arcs, i, px, py)
+                else:
+                    squared, t = _closest_on(arcs, i, px, py, smallest, scratch)
+                if i == own or squared <= ignored:
+                    continue
+                if squared < smallest or (found < 0 and squared <= smallest):
+                    smallest, found, found_at = squared, i, t
+                    best = math.sqrt(squared)
             continue
         left = node + 1
         right = node + 2 * ((first + end) // 2 - first)
@@ -338,6 +294,16 @@ def _squared(arcs: Floats, i: int, t: float, px: float, py: float) -> float:
 
 
 @kernel
+def _closest_on_line(arcs: Floats, i: int, px: float, py: float) -> tuple[float, float]:
+    """Squared distance to a straight arclet, and its parameter."""
+    vx, vy = px - arcs[i, 3], py - arcs[i, 4]
+    t = min(max((vx * arcs[i, 5] + vy * arcs[i, 6]) * arcs[i, 7], 0.0), 1.0)
+    vx -= t * arcs[i, 5]
+    vy -= t * arcs[i, 6]
+    return vx * vx + vy * vy, t
+
+
+@kernel
 def _closest_on(
     arcs: Floats, i: int, px: float, py: float, best: float, scratch: Scratch
 ) -> tuple[float, float]:
@@ -347,9 +313,7 @@ def _closest_on(
     squared = vx * vx + vy * vy
     degree = int(arcs[i, 0])
     if degree == 1:
-        cx, cy = arcs[i, 5], arcs[i, 6]
-        t = min(max((vx * cx + vy * cy) / (cx * cx + cy * cy), 0.0), 1.0)
-        return _squared(arcs, i, t, px, py), t
+        return _closest_on_line(arcs, i, px, py)
     n = 2 * degree
     x, y, squares = 5 + n, 6 + 2 * n, 7 + 3 * n
     smallest = squared
