@@ -37,6 +37,9 @@ _MOST_LEVELS = 8
 # Arclets that turn by more than this (radians) where they meet make a corner: compiled pieces and
 # drawing programs' printed digits bend less.
 _CORNER = 1e-6
+# Beyond this many sizes of the shape a point is drawn nearer, along the ray to it: what is closest
+# stays the same, and squares of squares of lengths do not overflow.
+_FAR = 1e20
 # A foot this near to an arclet's end (in its parameter) is at the joint, to rounding.
 _AT_END = 1e-12
 # Nodes along each side of the tiles in which a grid is worked on: 130,000 points.
@@ -278,7 +281,13 @@ def _feet(
 
     outline = shape.arclets
     count = len(points)
-    cells, order = _sorted(points - boundary.origin)
+    local = points - boundary.origin
+    reach = _FAR * float(np.abs(boundary.boxes[0]).max())
+    far = np.flatnonzero(np.abs(local).max(axis=1, initial=0.0) > reach)
+    far = far[np.isfinite(points[far]).all(axis=1)]
+    beyond = local[far]
+    local[far] *= reach / np.abs(beyond).max(axis=1, keepdims=True, initial=0.0)
+    cells, order = _sorted(local)
     feet = Feet(
         distance=np.full(count, np.nan),
         closest=np.full((count, 2), np.nan),
@@ -291,6 +300,9 @@ def _feet(
     inside = np.zeros(count, dtype=np.bool_)
     fill_inside(outline, cells.points[finite], feet.distance, shape.fill == "evenodd", inside)
     np.negative(feet.distance, out=feet.distance, where=inside)
+    if len(far):
+        place = np.argsort(order)[far]
+        feet.distance[place] = np.hypot(*(beyond - feet.closest[place]).T)
     return feet, order
 
 
