@@ -73,7 +73,6 @@ class Feet(NamedTuple):
     """Closest points, in the order of the cells' points, as the kernel fills them in."""
 
     distance: Floats  # (n,) without sign
-    closest: Floats  # (n, 2)
     arclet: Ints  # (n,) -1 where there is none
     at: Floats  # (n,) parameter of the arclet, in [0, 1]
     farthest: float  # beyond it nothing is looked for

@@ -17,7 +17,7 @@ from splinesdf._arrays import Floats, Ints, as_points, positive_tolerance
 from splinesdf._blocks import in_blocks, processors
 from splinesdf._tables import NOTHING, Arclets, Cells, Feet
 from splinesdf.culling import candidates_of_cells
-from splinesdf.curves.geometry import derivatives_at, turns
+from splinesdf.curves.geometry import derivatives_at, points_at, turns
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
 from splinesdf.meshes.mesh import Box, check_domain
@@ -208,27 +208,34 @@ def project(shape: Shape, points: ArrayLike) -> Projection:
     array = as_points(points)
     flat = array.reshape(-1, 2)
     boundary = shape.boundary
-    count = len(flat)
-    distance, point, curvature = np.empty(count), np.empty((count, 2)), np.empty(count)
-    arclet, at = np.empty(count, dtype=np.int64), np.empty(count)
     turn = turns(boundary)
+    count = len(flat)
+    found = Projection(
+        distance=np.empty(count),
+        point=np.empty((count, 2)),
+        piece=np.empty(count, dtype=np.int64),
+        parameter=np.empty(count),
+        curvature=np.empty(count),
+    )
 
     def work(part: slice) -> None:
         feet, order = _feet(shape, boundary, flat[part])
-        distance[part][order], point[part][order] = feet.distance, feet.closest + boundary.origin
-        arclet[part][order], at[part][order] = feet.arclet, feet.at
-        curvature[part][order] = _curvature(boundary, turn, feet.arclet, feet.at)
+        arclet, at = feet.arclet, feet.at
+        found.distance[part][order] = feet.distance
+        found.point[part][order] = points_at(boundary, arclet, at) + boundary.origin
+        found.piece[part][order] = np.where(arclet >= 0, boundary.piece[arclet], -1)
+        first, last = boundary.interval[arclet].T
+        found.parameter[part][order] = first + at * (last - first)
+        found.curvature[part][order] = _curvature(boundary, turn, arclet, at)
 
     in_blocks(count, work, size=_block_size(count))
-    interval = boundary.interval[arclet]
-    known = arclet >= 0
     grid = array.shape[:-1]
     return Projection(
-        distance.reshape(grid),
-        point.reshape(array.shape),
-        np.where(known, boundary.piece[arclet], -1).reshape(grid),
-        (interval[:, 0] + at * (interval[:, 1] - interval[:, 0])).reshape(grid),
-        curvature.reshape(grid),
+        found.distance.reshape(grid),
+        found.point.reshape(array.shape),
+        found.piece.reshape(grid),
+        found.parameter.reshape(grid),
+        found.curvature.reshape(grid),
     )
 
 
@@ -276,7 +283,8 @@ def _feet(
     shape: Shape, boundary: Arclets, points: Floats, *, farthest: float = np.inf
 ) -> tuple[Feet, Ints]:
     """Closest points of a block, with signed distances, and the order in which they come."""
-    from splinesdf.kernels.nearest import nearest  # Numba loads only when it is used
+    from splinesdf.kernels.few import nearest_of_few  # Numba loads only when it is used
+    from splinesdf.kernels.nearest import nearest
     from splinesdf.kernels.winding import fill_inside
 
     outline = shape.arclets
@@ -290,19 +298,23 @@ def _feet(
     cells, order = _sorted(local)
     feet = Feet(
         distance=np.full(count, np.nan),
-        closest=np.full((count, 2), np.nan),
         arclet=np.full(count, -1),
         at=np.full(count, np.nan),
         farthest=farthest,
     )
-    nearest(boundary, cells, candidates_of_cells(boundary, cells), NOTHING, feet)
+    candidates = candidates_of_cells(boundary, cells)
+    done = np.zeros(len(cells.starts) - 1, dtype=np.bool_)
+    nearest_of_few(boundary, cells, candidates, feet, done)
+    nearest(boundary, cells, candidates, done, NOTHING, feet)
     finite = slice(0, cells.starts[-1])
     inside = np.zeros(count, dtype=np.bool_)
     fill_inside(outline, cells.points[finite], feet.distance, shape.fill == "evenodd", inside)
     np.negative(feet.distance, out=feet.distance, where=inside)
     if len(far):
         place = np.argsort(order)[far]
-        feet.distance[place] = np.hypot(*(beyond - feet.closest[place]).T)
+        feet.distance[place] = np.hypot(
+            *(beyond - points_at(boundary, feet.arclet[place], feet.at[place])).T
+        )
     return feet, order
 
 

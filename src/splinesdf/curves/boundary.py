@@ -187,12 +187,12 @@ def _others(
     candidates = Candidates(np.arange(count + 1), np.zeros(count, dtype=np.int64))
     feet = Feet(
         distance=np.empty(count),
-        closest=np.empty((count, 2)),
         arclet=np.empty(count, dtype=np.int64),
         at=np.empty(count),
         farthest=np.inf,
     )
-    nearest(outline, cells, candidates, PassedOver(own, within), feet)
+    done = np.zeros(count, dtype=np.bool_)
+    nearest(outline, cells, candidates, done, PassedOver(own, within), feet)
     return feet.distance, feet.arclet, feet.at
 
 

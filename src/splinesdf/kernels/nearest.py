@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
+from splinesdf._arrays import Bools, Floats
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver, Scratch
 
@@ -35,9 +35,6 @@ _LAST_BISECTION = 1e-16
 _STEPS = 80
 # The walk's stack: a balanced tree over 2^60 arclets is no deeper, and a cell's own nodes.
 _STACK = 128
-# Arclets of a cell that are tried one after the other without a walk. More: cells near the medial
-# axis take this way too, but try more arclets in vain.
-_FEW = 4
 # Straight arclets that are tried one after the other at the bottom of the tree of a polygon.
 _LINES = 8
 # A bound that the distance is compared with is raised by this share, so that rounding in it
@@ -49,9 +46,14 @@ _GRAIN = 16 * 2.220446049250313e-16
 
 @kernel
 def nearest(
-    arclets: Arclets, cells: Cells, candidates: Candidates, passed_over: PassedOver, feet: Feet
+    arclets: Arclets,
+    cells: Cells,
+    candidates: Candidates,
+    done: Bools,
+    passed_over: PassedOver,
+    feet: Feet,
 ) -> None:
-    """Fill the closest point of each point of the cells.
+    """Fill the closest point of each point of the cells that are not done.
 
     Parameters
     ----------
@@ -60,6 +62,7 @@ def nearest(
         Of points relative to ``arclets.origin``; finite where a cell holds them.
     candidates : Candidates
         Of these cells.
+    done : ndarray of bool, shape (n_cells,)
     passed_over : PassedOver
     feet : Feet
         Filled. A point farther than ``feet.farthest`` from the curve gets infinity and arclet -1.
@@ -72,123 +75,32 @@ def nearest(
     alone = passed_over.own.shape[0] > 0
     own = -1
     ignored = passed_over.within * abs(passed_over.within)
-    for cell in range(cells.starts.shape[0] - 1):
-        first, end = cells.starts[cell], cells.starts[cell + 1]
+    for cell in range(done.shape[0]):
+        if done[cell]:
+            continue
         kept, count = candidates.starts[cell], candidates.starts[cell + 1] - candidates.starts[cell]
-        quick = not alone and _prepare(
-            tree, arcs, cells.points[first:end], candidates.nodes[kept:], count, scratch
-        )
-        best = limit
-        last_x = last_y = last_distance = 0.0
-        for i in range(first, end):
+        last_x = last_y = 0.0
+        last_distance = np.inf
+        for i in range(cells.starts[cell], cells.starts[cell + 1]):
             px, py = cells.points[i, 0], cells.points[i, 1]
             if alone:
                 own = passed_over.own[i]
-            if quick:
-                distance, found, t = _nearest_of_few(tree, arcs, px, py, limit, count, scratch)
-            else:
-                if i > first and not alone:
-                    # The distance is 1-Lipschitz; what is added is for rounding.
-                    step = math.sqrt((px - last_x) ** 2 + (py - last_y) ** 2)
-                    best = min((last_distance + step) * _SLACK + grain, limit)
-                while True:
-                    for j in range(count):
-                        # nearest ones last, on top of the stack
-                        scratch.nodes[j] = candidates.nodes[kept + count - 1 - j]
-                    distance, found, t = _search(
-                        tree, arcs, px, py, best, count, own, ignored, scratch
-                    )
-                    if found >= 0 or best == limit:
-                        break
-                    best = limit  # rounding hid the minimum from the neighbor's bound
+            # The distance is 1-Lipschitz; what is added is for rounding.
+            step = math.sqrt((px - last_x) ** 2 + (py - last_y) ** 2)
+            best = min((last_distance + step) * _SLACK + grain, limit)
+            while True:
+                for j in range(count):
+                    # nearest ones last, on top of the stack
+                    scratch.nodes[j] = candidates.nodes[kept + count - 1 - j]
+                distance, found, t = _search(tree, arcs, px, py, best, count, own, ignored, scratch)
+                if found >= 0 or best == limit:
+                    break
+                best = limit  # rounding hid the minimum from the neighbor's bound
             feet.arclet[i], feet.at[i] = found, t
-            if found < 0:
-                feet.distance[i] = feet.closest[i, 0] = feet.closest[i, 1] = np.inf
-                last_distance = feet.farthest
-            else:
-                feet.distance[i] = last_distance = distance
-                feet.closest[i, 0], feet.closest[i, 1] = _point(arcs, found, t)
+            feet.distance[i] = distance if found >= 0 else np.inf
             last_x, last_y = px, py
-
-
-@kernel
-def _prepare(
-    tree: Floats, arcs: Floats, points: Floats, nodes: Ints, count: int, scratch: Scratch
-) -> bool:
-    """Whether a few arclets are the only candidates and D is convex on each, for all the points.
-
-    If so, fills ``scratch.nodes`` with them and ``scratch.spans`` with their derivatives at the
-    end. D is convex if second differences of its coefficients are positive; they are linear in
-    the point, so it is enough to know them for one point and how far the others are.
-    """
-    if count > _FEW:
-        return False
-    x, y = points[0, 0], points[0, 1]
-    reach = 0.0
-    for k in range(points.shape[0]):
-        reach = max(reach, (points[k, 0] - x) ** 2 + (points[k, 1] - y) ** 2)
-    reach = math.sqrt(reach)
-    for j in range(count):
-        node = nodes[j]
-        i = int(tree[node, 6])
-        if int(tree[node, 7]) - i > 1:
-            return False
-        scratch.nodes[j] = node
-        degree = int(arcs[i, 0])
-        if degree == 1:
-            continue
-        n = 2 * degree
-        vx, vy = x - arcs[i, 3], y - arcs[i, 4]
-        noise = _NOISE * (vx * vx + vy * vy + arcs[i, 7 + 4 * n])
-        for k in range(5 + n, 4 + 2 * n):
-            bend_x = arcs[i, k] - 2.0 * arcs[i, k + 1] + arcs[i, k + 2]
-            at = k + n + 1
-            bend_y = arcs[i, at] - 2.0 * arcs[i, at + 1] + arcs[i, at + 2]
-            at += n + 1
-            bend = arcs[i, at] - 2.0 * arcs[i, at + 1] + arcs[i, at + 2]
-            bend -= 2.0 * (vx * bend_x + vy * bend_y)
-            if bend <= 4.0 * noise + 2.0 * reach * math.sqrt(bend_x * bend_x + bend_y * bend_y):
-                return False
-        dx = dy = 0.0
-        for k in range(degree):
-            dx += (k + 1) * arcs[i, 5 + 2 * k]
-            dy += (k + 1) * arcs[i, 6 + 2 * k]
-        scratch.spans[j, 0], scratch.spans[j, 1] = dx, dy
-    return True
-
-
-@kernel
-def _nearest_of_few(
-    tree: Floats, arcs: Floats, px: float, py: float, best: float, count: int, scratch: Scratch
-) -> tuple[float, int, float]:
-    """As `_search`, among the arclets that `_prepare` found to be the only candidates."""
-    found = -1
-    found_at = 0.0
-    limited = best < np.inf
-    for j in range(count):
-        node = scratch.nodes[j]
-        if (j > 0 or limited) and _capsule_distance(tree, node, px, py) > best:
-            continue
-        i = int(tree[node, 6])
-        vx, vy = px - arcs[i, 3], py - arcs[i, 4]
-        if arcs[i, 0] == 1.0:
-            squared, t = _closest_on_line(arcs, i, px, py)
-        else:
-            at_start = -(vx * arcs[i, 5] + vy * arcs[i, 6])
-            at_end = (arcs[i, 1] - px) * scratch.spans[j, 0]
-            at_end += (arcs[i, 2] - py) * scratch.spans[j, 1]
-            if at_start >= 0.0:
-                t = 0.0
-            elif at_end <= 0.0:
-                t = 1.0
-            else:
-                start = at_start / (at_start - at_end)
-                t = _foot(arcs, i, px, py, 0.0, 1.0, start)
-            squared = _squared(arcs, i, t, px, py)
-        value = math.sqrt(squared)
-        if value < best or (found < 0 and value <= best):
-            best, found, found_at = value, i, t
-    return best, found, found_at
+            if not alone:
+                last_distance = distance if found >= 0 else feet.farthest
 
 
 @kernel

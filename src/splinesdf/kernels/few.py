@@ -1,0 +1,212 @@
+"""Closest points in cells where little can be closest: all points of a cell at once.
+
+Where a cell has no more than a few arclets as candidates, and the squared distance D(t) to each
+is convex for all points of the cell, there is nothing to search: D' has one root or none, and
+three steps of Halley's method from a good start find it to rounding. They have no branches, so
+that the compiler takes several points at a time where the degree is small. That the steps did end
+is checked; a cell in which one did not is left to `nearest`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf._jit import kernel
+from splinesdf._tables import Arclets, Candidates, Cells, Feet
+
+# Arclets of a cell that are tried. More: cells near the medial axis are taken too, but try more
+# arclets in vain.
+_FEW = 4
+# Rounding in a coefficient of D, as a multiple of |p - start|^2 + |arc|^2, see `nearest`.
+_NOISE = 32 * 2.220446049250313e-16
+# The last of three steps must be this short (of the arclet's parameter): the error is about its
+# cube. Longer: error; shorter: cells are left in vain.
+_LAST_STEP = 4e-6
+_STEPS = 3
+# The degree of compiled curves. Pieces of a higher one, which are rare, are left to `nearest`.
+_DEGREE = 7
+
+
+@kernel
+def nearest_of_few(
+    arclets: Arclets, cells: Cells, candidates: Candidates, feet: Feet, done: Bools
+) -> None:
+    """Fill the closest points of all points of the cells that can be done in this way.
+
+    Parameters
+    ----------
+    arclets : Arclets
+    cells : Cells
+        Of points relative to ``arclets.origin``; finite where a cell holds them.
+    candidates : Candidates
+        Of these cells.
+    feet : Feet
+        Filled in the cells that are done.
+    done : ndarray of bool, shape (n_cells,)
+        Filled.
+    """
+    tree, arcs = arclets.tree, arclets.arcs
+    most = 0
+    for cell in range(done.shape[0]):
+        most = max(most, cells.starts[cell + 1] - cells.starts[cell])
+    power = np.empty((_DEGREE, 2))
+    t, squared, step = np.empty(most), np.empty(most), np.empty(most)
+    for cell in range(done.shape[0]):
+        first, end = cells.starts[cell], cells.starts[cell + 1]
+        kept = candidates.nodes[candidates.starts[cell] : candidates.starts[cell + 1]]
+        done[cell] = first == end
+        if first == end or kept.shape[0] > _FEW or arcs.shape[1] > 8 * (_DEGREE + 1):
+            continue
+        points = cells.points[first:end]
+        reach = _reach(points)
+        if not _all_convex(tree, arcs, points[0, 0], points[0, 1], reach, kept):
+            continue
+        done[cell] = True
+        feet.distance[first:end] = np.inf
+        feet.arclet[first:end] = -1
+        for node in kept:
+            # The first candidate is the nearest: what is far from it is far from all.
+            if _bound(tree, node, points[0, 0], points[0, 1]) - reach > feet.farthest:
+                continue
+            i = int(tree[node, 6])
+            degree = int(arcs[i, 0])
+            power[:] = 0.0
+            for k in range(degree):
+                power[k, 0], power[k, 1] = arcs[i, 5 + 2 * k], arcs[i, 6 + 2 * k]
+            if degree <= 3:
+                _feet_on_cubic(arcs, i, power, points, t, squared, step)
+            else:
+                _feet_on_arc(arcs, i, power, points, t, squared, step)
+            for k in range(end - first):
+                if not step[k] <= _LAST_STEP:
+                    done[cell] = False
+                if squared[k] < feet.distance[first + k]:
+                    feet.distance[first + k] = squared[k]
+                    feet.arclet[first + k], feet.at[first + k] = i, t[k]
+        for k in range(first, end):
+            feet.distance[k] = math.sqrt(feet.distance[k])
+            if feet.distance[k] > feet.farthest:
+                feet.distance[k], feet.arclet[k] = np.inf, -1
+
+
+@kernel
+def _reach(points: Floats) -> float:
+    """How far the points are from the first of them, at most."""
+    reach = 0.0
+    for k in range(points.shape[0]):
+        dx, dy = points[k, 0] - points[0, 0], points[k, 1] - points[0, 1]
+        reach = max(reach, dx * dx + dy * dy)
+    return math.sqrt(reach)
+
+
+@kernel
+def _bound(tree: Floats, node: int, x: float, y: float) -> float:
+    """Nothing under the node is nearer than this."""
+    wx, wy = x - tree[node, 0], y - tree[node, 1]
+    dx, dy = tree[node, 2], tree[node, 3]
+    share = min(max((wx * dx + wy * dy) * tree[node, 4], 0.0), 1.0)
+    wx -= share * dx
+    wy -= share * dy
+    return float(math.sqrt(wx * wx + wy * wy) - tree[node, 5])
+
+
+@kernel
+def _all_convex(tree: Floats, arcs: Floats, x: float, y: float, reach: float, kept: Ints) -> bool:
+    """Whether the nodes are arclets, each with a convex D for all points near (x, y).
+
+    D is convex if second differences of its coefficients are positive. They are linear in the
+    point, so it is enough to know them for one and how far the others are.
+    """
+    for node in kept:
+        i = int(tree[node, 6])
+        if int(tree[node, 7]) - i > 1:
+            return False
+        n = 2 * int(arcs[i, 0])
+        if n == 2:
+            continue
+        vx, vy = x - arcs[i, 3], y - arcs[i, 4]
+        noise = _NOISE * (vx * vx + vy * vy + arcs[i, 7 + 4 * n])
+        for k in range(5 + n, 4 + 2 * n):
+            bend_x = arcs[i, k] - 2.0 * arcs[i, k + 1] + arcs[i, k + 2]
+            at = k + n + 1
+            bend_y = arcs[i, at] - 2.0 * arcs[i, at + 1] + arcs[i, at + 2]
+            at += n + 1
+            bend = arcs[i, at] - 2.0 * arcs[i, at + 1] + arcs[i, at + 2]
+            bend -= 2.0 * (vx * bend_x + vy * bend_y)
+            if bend <= 4.0 * noise + 2.0 * reach * math.sqrt(bend_x * bend_x + bend_y * bend_y):
+                return False
+    return True
+
+
+@kernel
+def _feet_on_cubic(
+    arcs: Floats, i: int, power: Floats, points: Floats, t: Floats, squared: Floats, step: Floats
+) -> None:
+    """Fill parameters, squared distances and last steps, on an arclet of degree 3 at most."""
+    ax, ay, bx, by, cx, cy = (
+        power[0, 0],
+        power[0, 1],
+        power[1, 0],
+        power[1, 1],
+        power[2, 0],
+        power[2, 1],
+    )
+    end_x, end_y = ax + 2.0 * bx + 3.0 * cx, ay + 2.0 * by + 3.0 * cy
+    for p in range(points.shape[0]):
+        ox, oy = arcs[i, 3] - points[p, 0], arcs[i, 4] - points[p, 1]
+        # h = D' / 2 rises: from its values at the ends a secant, cut to [0, 1].
+        low = ox * ax + oy * ay
+        high = (arcs[i, 1] - points[p, 0]) * end_x + (arcs[i, 2] - points[p, 1]) * end_y
+        s = min(max(low / (low - high), 0.0), 1.0)
+        moved = 0.0
+        for _ in range(_STEPS):
+            x, y = ((cx * s + bx) * s + ax) * s + ox, ((cy * s + by) * s + ay) * s + oy
+            dx, dy = (3.0 * cx * s + 2.0 * bx) * s + ax, (3.0 * cy * s + 2.0 * by) * s + ay
+            ddx, ddy = 6.0 * cx * s + 2.0 * bx, 6.0 * cy * s + 2.0 * by
+            h = x * dx + y * dy
+            slope = dx * dx + dy * dy + x * ddx + y * ddy
+            bend = 3.0 * (dx * ddx + dy * ddy) + 6.0 * (x * cx + y * cy)
+            new = min(max(s - h * slope / (slope * slope - 0.5 * h * bend), 0.0), 1.0)
+            moved = abs(new - s)
+            s = new
+        x, y = ((cx * s + bx) * s + ax) * s + ox, ((cy * s + by) * s + ay) * s + oy
+        t[p], squared[p], step[p] = s, x * x + y * y, moved
+
+
+@kernel
+def _feet_on_arc(
+    arcs: Floats, i: int, power: Floats, points: Floats, t: Floats, squared: Floats, step: Floats
+) -> None:
+    """As `_feet_on_cubic`, for degrees up to _DEGREE; unused powers are zero."""
+    end_x = end_y = 0.0
+    for k in range(_DEGREE):
+        end_x += (k + 1) * power[k, 0]
+        end_y += (k + 1) * power[k, 1]
+    for p in range(points.shape[0]):
+        ox, oy = arcs[i, 3] - points[p, 0], arcs[i, 4] - points[p, 1]
+        low = ox * power[0, 0] + oy * power[0, 1]
+        high = (arcs[i, 1] - points[p, 0]) * end_x + (arcs[i, 2] - points[p, 1]) * end_y
+        s = min(max(low / (low - high), 0.0), 1.0)
+        moved = 0.0
+        for _ in range(_STEPS):
+            x = y = dx = dy = ddx = ddy = dddx = dddy = 0.0
+            for k in range(_DEGREE - 1, -1, -1):
+                # Taylor coefficients: a half of the second derivative, a sixth of the third.
+                dddx, dddy = dddx * s + ddx, dddy * s + ddy
+                ddx, ddy = ddx * s + dx, ddy * s + dy
+                dx, dy = dx * s + x + power[k, 0], dy * s + y + power[k, 1]
+                x, y = (x + power[k, 0]) * s, (y + power[k, 1]) * s
+            x, y = x + ox, y + oy
+            h = x * dx + y * dy
+            slope = dx * dx + dy * dy + 2.0 * (x * ddx + y * ddy)
+            bend = 6.0 * (dx * ddx + dy * ddy + x * dddx + y * dddy)
+            new = min(max(s - h * slope / (slope * slope - 0.5 * h * bend), 0.0), 1.0)
+            moved = abs(new - s)
+            s = new
+        x = y = 0.0
+        for k in range(_DEGREE - 1, -1, -1):
+            x, y = (x + power[k, 0]) * s, (y + power[k, 1]) * s
+        t[p], squared[p], step[p] = s, (x + ox) ** 2 + (y + oy) ** 2, moved
