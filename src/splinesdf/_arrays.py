@@ -30,14 +30,14 @@ def as_points(points: ArrayLike) -> Floats:
     return array
 
 
-def positive_tolerance(tolerance: float) -> float:
-    """The tolerance, or an `InputError` if it is not a positive number."""
+def positive(value: float, name: str) -> float:
+    """The value as a finite number above zero, or an `InputError` that names it."""
     try:
-        number = float(tolerance)
+        number = float(value)
     except (TypeError, ValueError) as error:
-        raise InputError(f"expected a tolerance as a number, got {tolerance!r}") from error
+        raise InputError(f"expected {name} as a number, got {value!r}") from error
     if not (np.isfinite(number) and number > 0.0):
-        raise InputError(f"expected a positive tolerance, got {number:g}")
+        raise InputError(f"expected a positive {name}, got {number:g}")
     return number
 
 

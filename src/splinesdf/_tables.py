@@ -22,6 +22,7 @@ class Arclets(NamedTuple):
     power: Floats  # (n, d + 1, 2) power basis of the arc minus its start, parameter in [0, 1]
     piece: Ints  # (n,) which piece of the shape
     interval: Floats  # (n, 2) the parameters of that piece where the arclet starts and ends
+    run: Ints  # (n,) the loop, or the run between crossings, that the arclet belongs to
     following: Ints  # (n,) the next arclet along the curve, -1 for none
     arcs: Floats  # (n, 8 (d + 1)) all that the kernels read of an arclet, in one row; see below
     tree: Floats  # (2 n - 1, 8) all that the search for the nearest reads of a node; see below

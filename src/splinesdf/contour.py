@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from splinesdf._arrays import Floats, positive_tolerance
+from splinesdf._arrays import Floats, positive
 from splinesdf.errors import InputError
 
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
@@ -177,7 +177,7 @@ def mirrored(contour: Contour) -> Contour:
 
 def check_tolerance(tolerance: float, arcs: Floats) -> None:
     """Refuse a tolerance that is not positive, or below the rounding of the coordinates."""
-    tolerance = positive_tolerance(tolerance)
+    tolerance = positive(tolerance, "tolerance")
     smallest = _ROUNDING * float(np.abs(arcs).max())
     if tolerance < smallest:
         raise InputError(

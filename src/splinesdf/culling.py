@@ -26,7 +26,7 @@ def closest_candidates(shape: Shape, boxes: ArrayLike) -> tuple[Ints, Ints]:
     arclets : ndarray, shape (starts[n],)
         Box ``i`` has ``arclets[starts[i]:starts[i + 1]]``, numbers of arclets of
         ``shape.boundary``. For every point of the box, the closest arclet is among them. Where
-        the box is small and no medial axis near, they are one to three.
+        the box is small and no medial axis near, they are one or two, seldom more.
     """
     from splinesdf.kernels.culling import MOST_KEPT, cull_boxes  # Numba loads only when it is used
 

@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints, positive_tolerance
+from splinesdf._arrays import Bools, Floats, Ints, positive
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError, ToleranceNotReached
@@ -185,7 +185,7 @@ def fit_steps(
     outward = 0.0 if band is None else max(band[1], 0.0)
     box = shape.default_domain(outward) if domain is None else check_domain(domain)
     largest = max(abs(value) for value in (*shape.box, *box))
-    tolerance = positive_tolerance(tolerance)
+    tolerance = positive(tolerance, "tolerance")
     if tolerance <= _ROUNDING * largest:
         raise InputError(
             f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import positive_tolerance
+from splinesdf._arrays import positive
 from splinesdf.contour import Contour, evaluate
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
@@ -58,7 +58,7 @@ def offset(shape: Shape, distances: ArrayLike, *, tolerance: float) -> list[Cont
         raise InputError(f"expected distances as numbers, got {distances!r}") from error
     if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
         raise InputError(f"expected one or more finite distances, got {distances!r}")
-    asked = _RESERVE * positive_tolerance(tolerance)
+    asked = _RESERVE * positive(tolerance, "tolerance")
     result = []
     for distance in wanted.tolist():
         fitted = fit(shape, tolerance=asked, band=(distance, distance))

@@ -30,9 +30,10 @@ _HALVINGS = 12
 # Halvings to bracket each turn; two turns closer than 2^-40 of a piece are one, to rounding.
 _TURN_HALVINGS = 40
 # A step between control points below this share of the largest coordinate is rounding: the x of a
-# straight vertical piece must not be seen to turn. Too large: a real turn is missed, and the
-# winding number is wrong within that share of the size of the curve there.
-_NO_STEP = 8 * 2.220446049250313e-16
+# straight vertical piece must not be seen to turn, nor that of an arc that ends where it turns.
+# Too large: a real turn is missed, and the winding number is wrong within that share of the size
+# of the curve there.
+_NO_STEP = 64 * 2.220446049250313e-16
 
 
 class Arcs(NamedTuple):
@@ -111,6 +112,7 @@ def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
         power=power,
         piece=np.concatenate([arcs.piece for arcs in groups])[order],
         interval=np.ascontiguousarray(np.concatenate([arcs.interval for arcs in groups])[order]),
+        run=label,
         following=following,
         arcs=_rows(degree[order], start, end, power, bernstein),
         tree=tree,

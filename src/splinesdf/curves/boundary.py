@@ -40,6 +40,7 @@ class _Parts(NamedTuple):
     chain: Ints  # (n,) number of the chain, from 0
     place: Ints  # (n,) place in the chain
     closed: Bools  # (n_chains,) whether the chain is a whole loop
+    following: Ints  # (n_chains,) the chain that was drawn next
 
 
 def filled_boundary(outline: Arclets, evenodd: bool, largest: float) -> Arclets:
@@ -126,12 +127,17 @@ def _in_chains(outline: Arclets, arclet: Ints, interval: Floats, begin: Bools) -
     opens = begin[order] | (place == 0)
     chain = np.cumsum(opens) - 1
     firsts = np.flatnonzero(opens)
+    # Each loop's chains are numbered one after the other.
+    first_chain = np.flatnonzero(np.diff(loop[firsts], prepend=-1))
+    following = np.arange(1, len(firsts) + 1)
+    following[np.append(first_chain[1:], len(firsts)) - 1] = first_chain
     return _Parts(
         arclet=arclet[order],
         interval=interval[order],
         chain=chain,
         place=np.arange(len(arclet)) - firsts[chain],
         closed=closed_loop[loop[firsts]],
+        following=following,
     )
 
 
@@ -249,7 +255,13 @@ def _rebuild(outline: Arclets, parts: _Parts, keep: Bools, left: Bools, touching
         labels.append(label[parts.chain[rows]])
         places.append(np.where(turned, -parts.place[rows], parts.place[rows]))
     runs = Runs(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
-    return _stitch(assemble(groups, runs, outline.origin), 2.0 * _MERGE * touching)
+    boundary = assemble(groups, runs, outline.origin)
+    # Pairs of kept chains that were drawn one after the other with the inside on the same side.
+    follows = parts.following
+    drawn = np.flatnonzero(keep & keep[follows] & (left == left[follows]) & ~parts.closed)
+    first = np.where(left[drawn], drawn, follows[drawn])
+    second = np.where(left[drawn], follows[drawn], drawn)
+    return _stitch(boundary, label[first], label[second], 2.0 * _MERGE * touching)
 
 
 def _restrict(arcs: Arcs, interval: Floats) -> Arcs:
@@ -267,18 +279,26 @@ def _restrict(arcs: Arcs, interval: Floats) -> Arcs:
     return result
 
 
-def _stitch(boundary: Arclets, near: float) -> Arclets:
-    """Lead each open end on to the start of a chain in the same place.
+def _stitch(boundary: Arclets, first: Ints, second: Ints, near: float) -> Arclets:
+    """Lead each chain's open end on to the start of a chain in the same place.
 
-    Where several meet, the one that turns most to the left keeps closest to the inside.
+    Chains (by number) that were drawn ``second`` after ``first`` go together. Of the others that
+    meet, the one that turns most to the left keeps closest to the inside.
     """
-    ends = np.flatnonzero(boundary.following < 0)
-    leading = np.zeros(len(boundary.start), dtype=bool)
-    leading[boundary.following[boundary.following >= 0]] = True
-    starts = np.flatnonzero(~leading)
     following = boundary.following.copy()
-    order = np.argsort(boundary.start[starts, 0])
-    starts = starts[order]
+    ends = np.flatnonzero(following < 0)
+    led_to = np.zeros(len(following), dtype=bool)
+    led_to[following[following >= 0]] = True
+    starts = np.flatnonzero(~led_to)
+    # Open chains have one end and one start each.
+    start_of = np.full(int(boundary.run.max()) + 1, -1)
+    end_of = start_of.copy()
+    start_of[boundary.run[starts]], end_of[boundary.run[ends]] = starts, ends
+    following[end_of[first]] = start_of[second]
+    led_to[start_of[second]] = True
+    ends = np.flatnonzero(following < 0)
+    starts = np.flatnonzero(~led_to)
+    starts = starts[np.argsort(boundary.start[starts, 0])]
     x = boundary.start[starts, 0]
     low = np.searchsorted(x, boundary.end[ends, 0] - near)
     high = np.searchsorted(x, boundary.end[ends, 0] + near, side="right")
