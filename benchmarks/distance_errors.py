@@ -22,7 +22,7 @@ import splinesdf as ss
 from tests import oracles
 from tests.glyphs import glyphs
 from tests.precise import Bezier, Curve, precise_distance
-from tests.real_shapes import CURVES, around, beside, formula_arcs, formula_shape, icons, outlines
+from tests.real_shapes import SMOOTH, around, beside, formula_arcs, formula_shape, icons, outlines
 
 # How far the polylines stay from the curves, as a share of the size. Polygons are their own.
 DEVIATION = 1e-7
@@ -47,7 +47,7 @@ def formula_case(name: str) -> Case:
 
 def case_sets(count: int) -> dict[str, list[Case]]:
     """Sets of shapes, at most so many of each, evenly picked."""
-    sets = {f"formula {name}": [formula_case(name)] for name in CURVES}
+    sets = {name: [formula_case(name)] for name in SMOOTH}
     for title, shapes in (("glyphs", glyphs()), ("icons", icons()), ("outlines", outlines())):
         step = max(1, len(shapes) // count)
         sets[title] = [bezier_case(shape) for shape in list(shapes.values())[::step]]
@@ -97,7 +97,7 @@ def polyline_error(case: Case, count: int) -> tuple[float, int, float]:
 def shown_row(title: str, cases: Sequence[Case], precise: int, points: int) -> str:
     """One line of the table; the points of a set are shared among its shapes."""
     began = time.perf_counter()
-    exact = [case for case in cases if title.startswith("formula") or all_is_boundary(case.shape)]
+    exact = [case for case in cases if title in SMOOTH or all_is_boundary(case.shape)]
     errors = [precise_error(case, max(2, precise // len(exact))) for case in exact]
     against = [polyline_error(case, points) for case in cases]
     beyond, wrong, left_out = zip(*against, strict=True)

@@ -1,4 +1,4 @@
-"""Icons, outlines and formula curves that are known in another way, and points to ask about."""
+"""Icons, outlines, formulas and NURBS that are known in another way, and points to ask about."""
 
 from __future__ import annotations
 
@@ -55,15 +55,33 @@ CURVES = {
         ({}, {1: "1", 11: "-1/20", 13: "1/20"}),
     ),
 }
+# The standard circle of nine control points, moved: the place of its middle, the images of (1, 0)
+# and of (0, 1).
+NURBS = {
+    "NURBS circle": (("0", "0"), ("1", "0"), ("0", "1")),
+    "NURBS ellipse": (("1/4", "-1/2"), ("9/10", "6/5"), ("-8/15", "2/5")),
+}
+_AROUND = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+SMOOTH = [*CURVES, *NURBS]
 
 
 def formula_shape(name: str) -> ss.Shape:
-    return ss.Shape.from_formula(*CURVES[name][:2], name=name)
+    """The curve as a shape, from its formulas or as NURBS."""
+    if name in CURVES:
+        return ss.Shape.from_formula(*CURVES[name][:2], name=name)
+    middle, east, north = ([float(Fraction(v)) for v in pair] for pair in NURBS[name])
+    control = np.array(middle) + np.array(_AROUND) @ np.array([east, north])
+    weights = [1.0, *([np.sqrt(0.5), 1.0] * 4)]
+    knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+    return ss.Shape.from_nurbs(control, degree=2, knots=knots, weights=weights, name=name)
 
 
 def formula_arcs(name: str) -> list[Fourier]:
     """The curve in stretches; Newton starts better from samples of short ones."""
-    x, y = (_series(*series) for series in CURVES[name][2:])
+    if name in CURVES:
+        x, y = (_series(*series) for series in CURVES[name][2:])
+    else:
+        x, y = (_series({0: m, 1: c}, {1: s}) for m, c, s in zip(*NURBS[name], strict=True))
     return [Fourier(x, y, a, b) for a, b in pairwise(np.linspace(0.0, 2 * np.pi, 33))]
 
 

@@ -9,7 +9,7 @@ import splinesdf as ss
 from tests import oracles
 from tests.glyphs import glyphs
 from tests.precise import Bezier, precise_distance
-from tests.real_shapes import CURVES, around, beside, formula_arcs, formula_shape, icons, outlines
+from tests.real_shapes import SMOOTH, around, beside, formula_arcs, formula_shape, icons, outlines
 
 # Bézier pieces are given exactly; about four roundings in a coordinate of at most 1.2 sizes.
 ROUNDING = 1e-15
@@ -48,7 +48,7 @@ def pieces(shape: ss.Shape) -> list[Bezier]:
     return [Bezier(oracles.piece(shape, i)) for i in range(shape.piece_count)]
 
 
-@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("name", SMOOTH)
 def test_formulas_against_40_digits(name: str) -> None:
     shape = formula_shape(name)
     points = questions(shape, 25, 1)
