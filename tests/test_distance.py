@@ -125,7 +125,11 @@ def enclosed_area(cubic: np.ndarray) -> float:
     return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
-@given(st.floats(0.05, 0.95), st.lists(finite, min_size=8, max_size=8))
+# Coarse, because a sliver thinner than rounding is part of the shape or not as rounding has it.
+thousandths = st.integers(-3000, 3000).map(lambda n: n / 1000)
+
+
+@given(st.floats(0.05, 0.95), st.lists(thousandths, min_size=8, max_size=8))
 def test_cutting_a_cubic_changes_nothing(t: float, numbers: list[float]) -> None:
     cubic = np.array(numbers).reshape(4, 2)
     if np.ptp(cubic, axis=0).max() < 1e-3:

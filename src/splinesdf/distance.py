@@ -297,7 +297,7 @@ def _feet(
     far = far[np.isfinite(points[far]).all(axis=1)]
     beyond = local[far]
     local[far] *= reach / np.abs(beyond).max(axis=1, keepdims=True, initial=0.0)
-    cells, order = _sorted(local)
+    cells, order = sorted_into_cells(local)
     feet = Feet(
         distance=np.full(count, np.nan),
         arclet=np.full(count, -1),
@@ -321,7 +321,7 @@ def _feet(
     return feet, order
 
 
-def _sorted(points: Floats) -> tuple[Cells, Ints]:
+def sorted_into_cells(points: Floats) -> tuple[Cells, Ints]:
     """Points sorted into the cells of a quadtree over their box, and the order that sorts them."""
     from splinesdf.kernels.cells import finite_box, sort_into_cells
 

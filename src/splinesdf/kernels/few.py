@@ -2,7 +2,7 @@
 
 Where a cell has no more than a few arclets as candidates, and the squared distance D(t) to each
 is convex for all points of the cell, there is nothing to search: D' has one root or none, and
-three steps of Halley's method from a good start find it to rounding. They have no branches, so
+two steps of Halley's method from a good start find it to rounding. They have no branches, so
 that the compiler takes several points at a time where the degree is small. That the steps did end
 is checked; a cell in which one did not is left to `nearest`.
 """
@@ -20,12 +20,15 @@ from splinesdf._tables import Arclets, Candidates, Cells, Feet
 # Arclets of a cell that are tried. More: cells near the medial axis are taken too, but try more
 # arclets in vain.
 _FEW = 4
+# Sides of a polygon that are tried, without a walk down the tree.
+_FEW_LINES = 40
 # Rounding in a coefficient of D, as a multiple of |p - start|^2 + |arc|^2, see `nearest`.
 _NOISE = 32 * 2.220446049250313e-16
-# The last of three steps must be this short (of the arclet's parameter): the error is about its
-# cube. Longer: error; shorter: cells are left in vain.
-_LAST_STEP = 4e-6
-_STEPS = 3
+# The last step must be this short (of the arclet's parameter): the error is about its cube, unless
+# the point is near a center of curvature, where the distance does not feel it. Longer: error;
+# shorter: cells are left in vain. A third step takes more time than the cells that it saves.
+_LAST_STEP = 2e-5
+_STEPS = 2
 # The degree of compiled curves. Pieces of a higher one, which are rare, are left to `nearest`.
 _DEGREE = 7
 
@@ -49,20 +52,20 @@ def nearest_of_few(
         Filled.
     """
     tree, arcs = arclets.tree, arclets.arcs
-    most = 0
-    for cell in range(done.shape[0]):
-        most = max(most, cells.starts[cell + 1] - cells.starts[cell])
     power = np.empty((_DEGREE, 2))
-    t, squared, step = np.empty(most), np.empty(most), np.empty(most)
     for cell in range(done.shape[0]):
         first, end = cells.starts[cell], cells.starts[cell + 1]
         kept = candidates.nodes[candidates.starts[cell] : candidates.starts[cell + 1]]
         done[cell] = first == end
-        if first == end or kept.shape[0] > _FEW or arcs.shape[1] > 8 * (_DEGREE + 1):
+        if first == end or arcs.shape[1] > 8 * (_DEGREE + 1):
             continue
         points = cells.points[first:end]
         reach = _reach(points)
-        if not _all_convex(tree, arcs, points[0, 0], points[0, 1], reach, kept):
+        # Lines alone have the narrowest rows.
+        lines = arcs.shape[1] == 16
+        if lines and _total(tree, kept) > _FEW_LINES:
+            continue
+        if not lines and not _all_convex(tree, arcs, points[0, 0], points[0, 1], reach, kept):
             continue
         done[cell] = True
         feet.distance[first:end] = np.inf
@@ -72,20 +75,43 @@ def nearest_of_few(
             if _bound(tree, node, points[0, 0], points[0, 1]) - reach > feet.farthest:
                 continue
             i = int(tree[node, 6])
+            if lines:
+                for j in range(i, int(tree[node, 7])):
+                    _try_line(
+                        arcs,
+                        j,
+                        points,
+                        feet.distance[first:end],
+                        feet.arclet[first:end],
+                        feet.at[first:end],
+                    )
+                continue
             degree = int(arcs[i, 0])
             power[:] = 0.0
             for k in range(degree):
                 power[k, 0], power[k, 1] = arcs[i, 5 + 2 * k], arcs[i, 6 + 2 * k]
             if degree <= 3:
-                _feet_on_cubic(arcs, i, power, points, t, squared, step)
+                unfinished = _try_cubic(
+                    arcs,
+                    i,
+                    power,
+                    points,
+                    feet.distance[first:end],
+                    feet.arclet[first:end],
+                    feet.at[first:end],
+                )
             else:
-                _feet_on_arc(arcs, i, power, points, t, squared, step)
-            for k in range(end - first):
-                if not step[k] <= _LAST_STEP:
-                    done[cell] = False
-                if squared[k] < feet.distance[first + k]:
-                    feet.distance[first + k] = squared[k]
-                    feet.arclet[first + k], feet.at[first + k] = i, t[k]
+                unfinished = _try_arc(
+                    arcs,
+                    i,
+                    power,
+                    points,
+                    feet.distance[first:end],
+                    feet.arclet[first:end],
+                    feet.at[first:end],
+                )
+            if unfinished > 0:
+                done[cell] = False
         for k in range(first, end):
             feet.distance[k] = math.sqrt(feet.distance[k])
             if feet.distance[k] > feet.farthest:
@@ -103,6 +129,32 @@ def _reach(points: Floats) -> float:
 
 
 @kernel
+def _total(tree: Floats, kept: Ints) -> int:
+    """How many arclets there are under some nodes."""
+    total = 0
+    for node in kept:
+        total += int(tree[node, 7]) - int(tree[node, 6])
+    return total
+
+
+@kernel
+def _try_line(
+    arcs: Floats, i: int, points: Floats, squared: Floats, arclet: Ints, at: Floats
+) -> None:
+    """Put a straight arclet in where it is nearer than what has been found."""
+    for p in range(points.shape[0]):
+        x, y = points[p, 0] - arcs[i, 3], points[p, 1] - arcs[i, 4]
+        t = min(max((x * arcs[i, 5] + y * arcs[i, 6]) * arcs[i, 7], 0.0), 1.0)
+        x -= t * arcs[i, 5]
+        y -= t * arcs[i, 6]
+        value = x * x + y * y
+        nearer = value < squared[p]
+        squared[p] = value if nearer else squared[p]
+        arclet[p] = i if nearer else arclet[p]
+        at[p] = t if nearer else at[p]
+
+
+@kernel
 def _bound(tree: Floats, node: int, x: float, y: float) -> float:
     """Nothing under the node is nearer than this."""
     wx, wy = x - tree[node, 0], y - tree[node, 1]
@@ -115,11 +167,13 @@ def _bound(tree: Floats, node: int, x: float, y: float) -> float:
 
 @kernel
 def _all_convex(tree: Floats, arcs: Floats, x: float, y: float, reach: float, kept: Ints) -> bool:
-    """Whether the nodes are arclets, each with a convex D for all points near (x, y).
+    """Whether the nodes are a few arclets, each with a convex D for all points near (x, y).
 
     D is convex if second differences of its coefficients are positive. They are linear in the
     point, so it is enough to know them for one and how far the others are.
     """
+    if kept.shape[0] > _FEW:
+        return False
     for node in kept:
         i = int(tree[node, 6])
         if int(tree[node, 7]) - i > 1:
@@ -142,10 +196,11 @@ def _all_convex(tree: Floats, arcs: Floats, x: float, y: float, reach: float, ke
 
 
 @kernel
-def _feet_on_cubic(
-    arcs: Floats, i: int, power: Floats, points: Floats, t: Floats, squared: Floats, step: Floats
-) -> None:
-    """Fill parameters, squared distances and last steps, on an arclet of degree 3 at most."""
+def _try_cubic(
+    arcs: Floats, i: int, power: Floats, points: Floats, squared: Floats, arclet: Ints, at: Floats
+) -> int:
+    """As `_try_line`, for degrees up to 3. Returns for how many points the steps did not end."""
+    unfinished = 0
     ax, ay, bx, by, cx, cy = (
         power[0, 0],
         power[0, 1],
@@ -173,14 +228,21 @@ def _feet_on_cubic(
             moved = abs(new - s)
             s = new
         x, y = ((cx * s + bx) * s + ax) * s + ox, ((cy * s + by) * s + ay) * s + oy
-        t[p], squared[p], step[p] = s, x * x + y * y, moved
+        value = x * x + y * y
+        unfinished += 0 if moved <= _LAST_STEP else 1
+        nearer = value < squared[p]
+        squared[p] = value if nearer else squared[p]
+        arclet[p] = i if nearer else arclet[p]
+        at[p] = s if nearer else at[p]
+    return unfinished
 
 
 @kernel
-def _feet_on_arc(
-    arcs: Floats, i: int, power: Floats, points: Floats, t: Floats, squared: Floats, step: Floats
-) -> None:
-    """As `_feet_on_cubic`, for degrees up to _DEGREE; unused powers are zero."""
+def _try_arc(
+    arcs: Floats, i: int, power: Floats, points: Floats, squared: Floats, arclet: Ints, at: Floats
+) -> int:
+    """As `_try_cubic`, for degrees up to _DEGREE; unused powers are zero."""
+    unfinished = 0
     end_x = end_y = 0.0
     for k in range(_DEGREE):
         end_x += (k + 1) * power[k, 0]
@@ -209,4 +271,11 @@ def _feet_on_arc(
         x = y = 0.0
         for k in range(_DEGREE - 1, -1, -1):
             x, y = (x + power[k, 0]) * s, (y + power[k, 1]) * s
-        t[p], squared[p], step[p] = s, (x + ox) ** 2 + (y + oy) ** 2, moved
+        x, y = x + ox, y + oy
+        value = x * x + y * y
+        unfinished += 0 if moved <= _LAST_STEP else 1
+        nearer = value < squared[p]
+        squared[p] = value if nearer else squared[p]
+        arclet[p] = i if nearer else arclet[p]
+        at[p] = s if nearer else at[p]
+    return unfinished

@@ -1,0 +1,102 @@
+"""Where the time of an exact distance goes: nanoseconds a point of each step, on one thread.
+
+    python -m benchmarks.distance_profile
+
+One block of points, as a thread takes it, goes through the steps of `splinesdf.distance` one by
+one; the least time of several rounds counts. "quick" is the share of points in cells whose
+candidates are so few that no tree is walked. The last column is what a second thread leaves of
+the time for a million points: half would be perfect.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+import splinesdf as ss
+from benchmarks.distance_speed import limacon_cubics, limacon_polygon
+from splinesdf._blocks import processors
+from splinesdf._tables import NOTHING, Feet
+from splinesdf.culling import candidates_of_cells
+from splinesdf.distance import sorted_into_cells
+from splinesdf.kernels.few import nearest_of_few
+from splinesdf.kernels.nearest import nearest
+from splinesdf.kernels.winding import fill_inside
+from tests.glyphs import glyphs
+
+SIDE, ROUNDS = 362, 7
+
+
+def steps(shape: ss.Shape, points: np.ndarray) -> tuple[dict[str, float], float]:
+    """Seconds of each step, and the share of points that need no walk."""
+    boundary, count = shape.boundary, len(points)
+    seconds: dict[str, float] = {}
+    began = 0.0
+
+    def lap(name: str) -> None:
+        nonlocal began
+        now = time.thread_time()
+        seconds[name] = min(seconds.get(name, np.inf), now - began)
+        began = now
+
+    for _ in range(ROUNDS):
+        began = time.thread_time()
+        cells, order = sorted_into_cells(points - boundary.origin)
+        lap("sort")
+        candidates = candidates_of_cells(boundary, cells)
+        lap("cull")
+        feet = Feet(np.empty(count), np.empty(count, dtype=np.int64), np.empty(count), np.inf)
+        done = np.zeros(len(cells.starts) - 1, dtype=np.bool_)
+        lap("room")
+        nearest_of_few(boundary, cells, candidates, feet, done)
+        lap("few")
+        nearest(boundary, cells, candidates, done, NOTHING, feet)
+        lap("walk")
+        inside = np.empty(count, dtype=np.bool_)
+        fill_inside(shape.arclets, cells.points, feet.distance, shape.fill == "evenodd", inside)
+        lap("side")
+        result = np.empty(count)
+        result[order] = np.where(inside, -feet.distance, feet.distance)
+        lap("out")
+    return seconds, float(np.diff(cells.starts)[done].sum() / count)
+
+
+def whole(shape: ss.Shape, points: np.ndarray) -> float:
+    """Seconds of `signed_distance` on all threads."""
+    times = []
+    for _ in range(ROUNDS):
+        began = time.perf_counter()
+        ss.signed_distance(shape, points)
+        times.append(time.perf_counter() - began)
+    return float(np.median(times))
+
+
+def main() -> None:
+    shapes = {
+        "32 cubics": limacon_cubics(32),
+        "glyph &": glyphs()["DejaVuSans:&"],
+        "1,383-gon": limacon_polygon(1383),
+        "100,000-gon": limacon_polygon(100_000),
+    }
+    names = ("sort", "cull", "room", "few", "walk", "side", "out")
+    print(f"ns a point    {''.join(f'{name:>7}' for name in names)}  quick    all  threads")
+    for title, shape in shapes.items():
+        xmin, ymin, xmax, ymax = shape.default_domain()
+        tile = (xmax - xmin) * SIDE / 1000
+        line = np.linspace(0.0, tile, SIDE)
+        middle = 0.5 * np.array([xmin + xmax - tile, ymin + ymax - tile])
+        grid = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2) + middle
+        points = np.random.default_rng(1).uniform((xmin, ymin), (xmax, ymax), (1_000_000, 2))
+        for kind, some in (("grid", grid), ("random", points[: SIDE * SIDE])):
+            seconds, quick = steps(shape, some)
+            each = [seconds[name] / len(some) * 1e9 for name in names]
+            shown = "".join(f"{value:7.1f}" for value in each)
+            alone = sum(each) * 1e-9 * len(points)
+            share = f"{whole(shape, points) / alone:8.2f}" if kind == "random" else ""
+            print(f"{title:12} {kind:6}{shown}{quick:7.2f}{sum(each):7.0f} {share}")
+    print(f"{processors()} processors")
+
+
+if __name__ == "__main__":
+    main()

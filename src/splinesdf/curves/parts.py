@@ -1,0 +1,92 @@
+"""A shape's arclets cut where they cross or touch, and joined to chains in between."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf._tables import Arclets
+from splinesdf.curves.crossings import find_crossings
+from splinesdf.curves.geometry import points_at
+
+# Crossings on one arc nearer than this many times what counts as touching are one.
+MERGE = 8.0
+
+
+class Parts(NamedTuple):
+    """Arclets cut at crossings, in the order in which they were drawn."""
+
+    arclet: Ints  # (n,)
+    interval: Floats  # (n, 2) parameters of the arclet
+    chain: Ints  # (n,) number of the chain, from 0
+    place: Ints  # (n,) place in the chain
+    closed: Bools  # (n_chains,) whether the chain is a whole loop
+    following: Ints  # (n_chains,) the chain that was drawn next
+
+
+def cut_at_crossings(outline: Arclets, touching: float) -> Parts:
+    """The arclets of a shape, cut wherever another one is within ``touching``."""
+    pair, at = find_crossings(outline, touching)
+    arclet, t = pair.ravel(), at.ravel()
+    order = np.lexsort((t, arclet))
+    arclet, t = arclet[order], t[order]
+    place = points_at(outline, arclet, t)
+    count = len(outline.start)
+    near = MERGE * touching
+    at_start = np.hypot(*(place - outline.start[arclet]).T) <= near
+    at_end = np.hypot(*(place - outline.end[arclet]).T) <= near
+    # A chain begins at the joint before these arclets.
+    begins = np.zeros(count, dtype=bool)
+    begins[arclet[at_start]] = True
+    begins[outline.following[arclet[at_end]]] = True
+    inner = ~(at_start | at_end)
+    arclet, t, place = arclet[inner], t[inner], place[inner]
+    if len(arclet):
+        gap = np.hypot(*np.diff(place, axis=0, prepend=place[:1]).T)
+        again = (np.diff(arclet, prepend=-1) == 0) & (gap <= near)
+        arclet, t = arclet[~again], t[~again]
+    part_arclet = np.concatenate([np.arange(count), arclet])
+    low = np.concatenate([np.zeros(count), t])
+    order = np.lexsort((low, part_arclet))
+    part_arclet, low = part_arclet[order], low[order]
+    last = np.diff(part_arclet, append=count) != 0
+    high = np.where(last, 1.0, np.append(low[1:], 1.0))
+    begin = (low > 0.0) | begins[part_arclet]
+    return _in_chains(outline, part_arclet, np.column_stack([low, high]), begin)
+
+
+def _in_chains(outline: Arclets, arclet: Ints, interval: Floats, begin: Bools) -> Parts:
+    """Number the runs between crossings; a loop's parts are turned to begin with a crossing."""
+    first_of_loop = np.zeros(len(outline.start), dtype=bool)
+    # A loop's last arclet leads back to its first one.
+    back = outline.following <= np.arange(len(outline.start))
+    first_of_loop[outline.following[back]] = True
+    starts = np.flatnonzero(first_of_loop[arclet] & (interval[:, 0] == 0.0))
+    loop = np.searchsorted(starts, np.arange(len(arclet)), side="right") - 1
+    sizes = np.diff(np.append(starts, len(arclet)))
+    broken = np.flatnonzero(begin)
+    shift = np.zeros(len(starts), dtype=np.int64)
+    loops, first = np.unique(loop[broken], return_index=True)
+    shift[loops] = broken[first] - starts[loops]
+    closed_loop = np.ones(len(starts), dtype=bool)
+    closed_loop[loops] = False
+    place = (np.arange(len(arclet)) - starts[loop] - shift[loop]) % sizes[loop]
+    order = np.lexsort((place, loop))
+    loop, place = loop[order], place[order]
+    opens = begin[order] | (place == 0)
+    chain = np.cumsum(opens) - 1
+    firsts = np.flatnonzero(opens)
+    # Each loop's chains are numbered one after the other.
+    first_chain = np.flatnonzero(np.diff(loop[firsts], prepend=-1))
+    following = np.arange(1, len(firsts) + 1)
+    following[np.append(first_chain[1:], len(firsts)) - 1] = first_chain
+    return Parts(
+        arclet=arclet[order],
+        interval=interval[order],
+        chain=chain,
+        place=np.arange(len(arclet)) - firsts[chain],
+        closed=closed_loop[loop[firsts]],
+        following=following,
+    )
