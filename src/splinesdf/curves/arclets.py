@@ -190,11 +190,11 @@ def _split_turns(arcs: Arcs, axis: int, noise: float) -> Arcs:
     done = []
     for _ in range(_TURN_HALVINGS):
         steps = np.diff(arcs.control[:, :, axis], axis=1)
-        turns = _sign_changes(np.where(np.abs(steps) <= noise, 0.0, steps))
+        steps[np.abs(steps) <= noise] = 0.0
+        turns = _sign_changes(steps)
         done.append(_take(arcs, turns == 0))
-        single = _take(arcs, turns == 1)
-        if len(single.control):
-            done.append(split(single, _turn(np.diff(single.control[:, :, axis], axis=1))))
+        if np.any(turns == 1):
+            done.append(split(_take(arcs, turns == 1), _turn(steps[turns == 1])))
         arcs = split(_take(arcs, turns > 1), 0.5)
         if len(arcs.control) == 0:
             break

@@ -109,31 +109,35 @@ def bounding(outline: Arclets, parts: Parts, sides: Sides, touching: float) -> t
     keep, left = sides.left != sides.right, sides.left.copy()
     tip = np.zeros(len(keep), dtype=bool)
     size = float(np.ptp(outline.boxes[0].reshape(2, 2), axis=0).max())
-    for run, before in _dropped_runs(parts, sides, keep):
+    tiny = sides.length < _SHORTEST_SLIT * size
+    for run, before in _doubtful_runs(parts, sides, keep, tiny):
         length = float(sides.length[run].sum())
-        thin = length < _LONGEST_TIP * size and sides.apart[run].max() > _ON_TOP * touching
+        apart = sides.apart[run][sides.partner[run] >= 0].max(initial=0.0)
+        thin = length < _LONGEST_TIP * size and apart > _ON_TOP * touching
         if thin or length < _SHORTEST_SLIT * size:
             tip[run], left[run] = True, left[before]
     keep &= ~_repeated(outline, parts, sides, keep, touching)
     return keep | tip, left
 
 
-def _dropped_runs(parts: Parts, sides: Sides, keep: Bools) -> list[tuple[list[int], int]]:
-    """Runs of chains with another on top between two kept ones, and the kept one before each.
+def _doubtful_runs(
+    parts: Parts, sides: Sides, keep: Bools, tiny: Bools
+) -> list[tuple[list[int], int]]:
+    """Runs of chains that are tiny, or dropped with another on top; and the chain before each.
 
-    Only where what is kept before and after has the inside on the same side: the contour might
-    as well go on through the run.
+    Only between two chains that are kept, with the inside on the same side: the contour might as
+    well go on through the run.
     """
-    on_top = ~keep & (sides.partner >= 0)
-    first = np.flatnonzero(keep & on_top[parts.following])
+    doubtful = tiny | (~keep & (sides.partner >= 0))
+    firm = keep & ~doubtful
     result = []
-    for before in first.tolist():
+    for before in np.flatnonzero(firm & doubtful[parts.following]).tolist():
         run = []
         chain = int(parts.following[before])
-        while on_top[chain]:
+        while doubtful[chain]:
             run.append(chain)
             chain = int(parts.following[chain])
-        if keep[chain] and sides.left[chain] == sides.left[before]:
+        if firm[chain] and sides.left[chain] == sides.left[before]:
             result.append((run, before))
     return result
 

@@ -30,6 +30,8 @@ _NOISE = 32 * 2.220446049250313e-16
 _DEPTH = 50
 # Halley's last step: its error is about the cube of this, so the parameter is good to rounding.
 _LAST_STEP = 4e-6
+# Only if a step is this much shorter than the one before is it the third order that has come.
+_FAST = 0.01
 # A halving gains one bit, so it goes on to the last one.
 _LAST_BISECTION = 1e-16
 _STEPS = 80
@@ -276,18 +278,19 @@ def _closest_on(
             spans[top + 1, 0], spans[top + 1, 1] = middle, high
             size = top + 2
             continue
-        if changes >= 1 and (changes > 1 or first_sign < 0.0):
+        # Where D is flat its signs are noise, but h in `_foot` is not: as next to a cusp.
+        if flat or changes > 1 or (changes == 1 and first_sign < 0.0):
             t = _foot(arcs, i, px, py, low, high, low + root * (high - low))
             value = _squared(arcs, i, t, px, py)
             if value < result:
                 result, result_at = value, t
-            if changes == 1:
+            if changes == 1 and not flat:
                 continue  # falling before it and rising behind it: no end is nearer
-        if changes > 0 or first_sign >= 0.0:
+        if flat or changes > 0 or first_sign >= 0.0:
             value = _squared(arcs, i, low, px, py)
             if value < result:
                 result, result_at = value, low
-        if changes > 0 or first_sign <= 0.0:
+        if flat or changes > 0 or first_sign <= 0.0:
             value = _squared(arcs, i, high, px, py)
             if value < result:
                 result, result_at = value, high
@@ -306,6 +309,7 @@ def _foot(
     ox, oy = arcs[i, 3] - px, arcs[i, 4] - py
     last = 3 + 2 * int(arcs[i, 0])
     t = start
+    before = 0.0
     for _ in range(_STEPS):
         x = y = dx = dy = ddx = ddy = dddx = dddy = 0.0
         for k in range(last, 3, -2):
@@ -324,12 +328,15 @@ def _foot(
         bend = 6.0 * (dx * ddx + dy * ddy + x * dddx + y * dddy)
         under = slope * slope - 0.5 * h * bend
         moved = t - h * slope / under if under > 0.0 and slope > 0.0 else low - 1.0
-        last_step = _LAST_STEP
-        if not low <= moved <= high:
+        halved = not low <= moved <= high
+        if halved:
             moved = 0.5 * (low + high)
-            last_step = _LAST_BISECTION
         step = abs(moved - t)
         t = moved
-        if step <= last_step:
+        # Next to a cusp three roots are close to each other, and steps shrink by halves at first.
+        if step <= _LAST_BISECTION or (
+            step <= _LAST_STEP and step <= _FAST * before and not halved
+        ):
             break
+        before = step
     return t
