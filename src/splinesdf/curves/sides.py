@@ -24,7 +24,7 @@ _ON_TOP = 0.25
 # The tip of a cusp that is thinner than what counts as touching is no longer than this share of
 # the size: a width that grows like the square or the cube of the length has grown out of it. And
 # below the second share, whatever it is, to keep it costs no more than its length.
-_LONGEST_TIP, _SHORTEST_SLIT = 1e-4, 1e-9
+_LONGEST_TIP, _SHORTEST_SLIT = 1e-4, 1e-7
 
 
 class Sides(NamedTuple):

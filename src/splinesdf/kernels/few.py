@@ -24,15 +24,10 @@ _FEW = 4
 _FEW_LINES = 40
 # Rounding in a coefficient of D, as a multiple of |p - start|^2 + |arc|^2, see `nearest`.
 _NOISE = 32 * 2.220446049250313e-16
-# The last step must be this short (of the arclet's parameter): the error is about its cube, unless
-# the point is near a center of curvature, where the distance does not feel it. Longer: error;
-# shorter: cells are left in vain. A third step takes more time than the cells that it saves.
-_LAST_STEP = 2e-5
+# Two steps are enough where the error that they leave, about the second (second / first)^3, is
+# below this share of the arclet. A third step takes more time than the cells that it saves.
 _STEPS = 2
-# And, unless there is nothing left to go, this much shorter than the one before: next to a cusp
-# steps shrink by halves.
-_FAST = 0.01
-_NOTHING = 1e-14
+_ERROR = 1e-16
 # The degree of compiled curves. Pieces of a higher one, which are rare, are left to `nearest`.
 _DEGREE = 7
 
@@ -233,8 +228,8 @@ def _try_cubic(
             s = new
         x, y = ((cx * s + bx) * s + ax) * s + ox, ((cy * s + by) * s + ay) * s + oy
         value = x * x + y * y
-        enough = min(_LAST_STEP, max(_FAST * before, _NOTHING))
-        unfinished += 0 if moved <= enough else 1
+        shrunk = moved / max(before, _ERROR)
+        unfinished += 0 if moved * shrunk * shrunk * shrunk <= _ERROR else 1
         nearer = value < squared[p]
         squared[p] = value if nearer else squared[p]
         arclet[p] = i if nearer else arclet[p]
@@ -278,8 +273,8 @@ def _try_arc(
             x, y = (x + power[k, 0]) * s, (y + power[k, 1]) * s
         x, y = x + ox, y + oy
         value = x * x + y * y
-        enough = min(_LAST_STEP, max(_FAST * before, _NOTHING))
-        unfinished += 0 if moved <= enough else 1
+        shrunk = moved / max(before, _ERROR)
+        unfinished += 0 if moved * shrunk * shrunk * shrunk <= _ERROR else 1
         nearer = value < squared[p]
         squared[p] = value if nearer else squared[p]
         arclet[p] = i if nearer else arclet[p]

@@ -28,12 +28,10 @@ from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver, Scra
 _NOISE = 32 * 2.220446049250313e-16
 # Halvings of one arclet: 2^-50 of it is below the spacing of floating-point numbers.
 _DEPTH = 50
-# Halley's last step: its error is about the cube of this, so the parameter is good to rounding.
-_LAST_STEP = 4e-6
-# Only if a step is this much shorter than the one before is it the third order that has come.
-_FAST = 0.01
-# A halving gains one bit, so it goes on to the last one.
-_LAST_BISECTION = 1e-16
+# Error of a parameter that is not worth another step of Halley's method. What is left after a step
+# is about step (step / the one before)^3, as the order is three; next to a cusp, where three roots
+# are close to each other, steps shrink by halves at first.
+_ERROR = 1e-16
 _STEPS = 80
 # The walk's stack: a balanced tree over 2^60 arclets is no deeper, and a cell's own nodes.
 _STACK = 128
@@ -309,7 +307,7 @@ def _foot(
     ox, oy = arcs[i, 3] - px, arcs[i, 4] - py
     last = 3 + 2 * int(arcs[i, 0])
     t = start
-    before = 0.0
+    before = 1e-300
     for _ in range(_STEPS):
         x = y = dx = dy = ddx = ddy = dddx = dddy = 0.0
         for k in range(last, 3, -2):
@@ -333,10 +331,8 @@ def _foot(
             moved = 0.5 * (low + high)
         step = abs(moved - t)
         t = moved
-        # Next to a cusp three roots are close to each other, and steps shrink by halves at first.
-        if step <= _LAST_BISECTION or (
-            step <= _LAST_STEP and step <= _FAST * before and not halved
-        ):
+        left = step if halved else step * (step / before) ** 3
+        if min(left, step) <= _ERROR:
             break
         before = step
     return t
