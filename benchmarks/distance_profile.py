@@ -5,11 +5,13 @@
 One block of points, as a thread takes it, goes through the steps of `splinesdf.distance` one by
 one; the least time of several rounds counts. "quick" is the share of points in cells whose
 candidates are so few that no tree is walked. The last column is what a second thread leaves of
-the time for a million points: half would be perfect.
+the time for a million points: half would be perfect. Last, ten million points at once: the memory
+beyond the points themselves and the result.
 """
 
 from __future__ import annotations
 
+import resource
 import time
 
 import numpy as np
@@ -72,6 +74,18 @@ def whole(shape: ss.Shape, points: np.ndarray) -> float:
     return float(np.median(times))
 
 
+def many(shape: ss.Shape, count: int) -> str:
+    """Seconds and memory of many points at once."""
+    xmin, ymin, xmax, ymax = shape.default_domain()
+    points = np.random.default_rng(2).uniform((xmin, ymin), (xmax, ymax), (count, 2))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    began = time.perf_counter()
+    result = ss.signed_distance(shape, points)
+    seconds = time.perf_counter() - began
+    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before - result.nbytes // 1024
+    return f"{count:,} points: {seconds:.2f} s, {max(grown, 0) / 1024:.0f} MiB beside the result"
+
+
 def main() -> None:
     shapes = {
         "32 cubics": limacon_cubics(32),
@@ -95,7 +109,7 @@ def main() -> None:
             alone = sum(each) * 1e-9 * len(points)
             share = f"{whole(shape, points) / alone:8.2f}" if kind == "random" else ""
             print(f"{title:12} {kind:6}{shown}{quick:7.2f}{sum(each):7.0f} {share}")
-    print(f"{processors()} processors")
+    print(f"{processors()} processors; {many(shapes['32 cubics'], 10_000_000)}")
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ def positive(value: float, name: str) -> float:
     try:
         number = float(value)
     except (TypeError, ValueError) as error:
-        raise InputError(f"expected {name} as a number, got {value!r}") from error
+        raise InputError(f"expected a number for {name}, got {value!r}") from error
     if not (np.isfinite(number) and number > 0.0):
         raise InputError(f"expected a positive {name}, got {number:g}")
     return number
