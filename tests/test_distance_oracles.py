@@ -158,6 +158,23 @@ def test_sides_a_trillionth_from_a_glyph(name: str) -> None:
         assert np.array_equal(ss.signed_distance(shape, near) < 0, expected)
 
 
+def test_sides_at_the_point_where_three_petals_meet() -> None:
+    # r = cos(3 angle) / 2 about the middle, where that is positive: no other part is filled.
+    rng = np.random.default_rng(15)
+    angle = rng.uniform(0.0, 2 * np.pi, 20_000)
+    radius = 10.0 ** rng.uniform(-11.5, -0.4, 20_000)
+    points = 0.45 + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    # As the points came out, relative to the middle as it is drawn.
+    x, y = (points - 0.45).T
+    radius, cosine = np.hypot(x, y), np.cos(3.0 * np.arctan2(y, x))
+    inside = 2.0 * radius < cosine
+    # Both cos(3 angle) r and r - cos(3 angle) / 2 change by at most 3 for a step of one.
+    clear = np.minimum(np.abs(cosine) * radius, np.abs(radius - 0.5 * cosine)) > 3e-12
+    assert np.mean(clear) > 0.9
+    found = ss.signed_distance(formula_shape("gamma3"), points) < 0
+    assert np.array_equal(found[clear], inside[clear])
+
+
 @pytest.mark.parametrize("name", ["gamma1", "gamma2", "wavy"])
 def test_many_points_beside_a_curve(name: str) -> None:
     # In company each point starts from what others found; at 1e-14 that is all rounding. Distances

@@ -20,7 +20,7 @@ from splinesdf._atomic import atomic_file
 from splinesdf._paths import as_path
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
-from splinesdf.distance import signed_distance
+from splinesdf.distance import signed_distance_grid
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.fit import FitResult
 from splinesdf.meshes import Box, Mesh
@@ -101,8 +101,8 @@ def plot_shape(shape: Shape, ax: Axes) -> None:
     The fill is where the exact distance is negative; matplotlib itself knows no even-odd rule.
     """
     _upright(ax, shape.y_down)
-    x, y, points = _lattice(shape.box, _SAMPLES)
-    value = signed_distance(shape, points)
+    x, y, _ = _lattice(shape.box, _SAMPLES)
+    value = signed_distance_grid(shape, len(x), len(y), domain=shape.box).distance
     lowest = min(float(value.min()), 0.0) - shape.size
     filled = ax.contourf(x, y, value, levels=[lowest, 0.0], colors=[_FILL], zorder=0.5)
     _outline(shape, ax, color=INK, linewidth=1.0)
