@@ -5,8 +5,8 @@ For a point p and an arclet c of degree d, D(t) = |c(t) - p|^2 is a Bernstein po
 
 * D >= its smallest coefficient: an arclet that cannot beat the best so far is left at once;
 * D' has at most as many roots as the coefficients' differences change sign: with one change the
-  minimum is unique and a bracketed iteration finds it; with more, D is halved. D is flat to rounding
-  where the point is the center of a circular arc: there any parameter is right.
+  minimum is unique and a bracketed iteration finds it; with more, D is halved. D is flat to
+  rounding where the point is the center of a circular arc: there any parameter is right.
 
 Points come sorted into cells, and the nodes of the tree that can be closest to some point of a
 cell are known (`culling`), so that a point starts its walk from a few of them.
