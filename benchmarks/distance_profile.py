@@ -11,8 +11,8 @@ beyond the points themselves and the result.
 
 from __future__ import annotations
 
-import resource
 import time
+import tracemalloc
 
 import numpy as np
 
@@ -78,12 +78,14 @@ def many(shape: ss.Shape, count: int) -> str:
     """Seconds and memory of many points at once."""
     xmin, ymin, xmax, ymax = shape.default_domain()
     points = np.random.default_rng(2).uniform((xmin, ymin), (xmax, ymax), (count, 2))
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     began = time.perf_counter()
-    result = ss.signed_distance(shape, points)
+    ss.signed_distance(shape, points)
     seconds = time.perf_counter() - began
-    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before - result.nbytes // 1024
-    return f"{count:,} points: {seconds:.2f} s, {max(grown, 0) / 1024:.0f} MiB beside the result"
+    tracemalloc.start()
+    result = ss.signed_distance(shape, points)
+    peak = tracemalloc.get_traced_memory()[1] - result.nbytes
+    tracemalloc.stop()
+    return f"{count:,} points: {seconds:.2f} s, {peak / 2**20:.0f} MiB beside the result"
 
 
 def main() -> None:
