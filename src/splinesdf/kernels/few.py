@@ -215,7 +215,7 @@ def _try_cubic(
         low = ox * ax + oy * ay
         high = (arcs[i, 1] - points[p, 0]) * end_x + (arcs[i, 2] - points[p, 1]) * end_y
         s = min(max(low / (low - high), 0.0), 1.0)
-        moved = before = 0.0
+        moved = before = step = 0.0
         for _ in range(_STEPS):
             x, y = ((cx * s + bx) * s + ax) * s + ox, ((cy * s + by) * s + ay) * s + oy
             dx, dy = (3.0 * cx * s + 2.0 * bx) * s + ax, (3.0 * cy * s + 2.0 * by) * s + ay
@@ -223,8 +223,11 @@ def _try_cubic(
             h = x * dx + y * dy
             slope = dx * dx + dy * dy + x * ddx + y * ddy
             bend = 3.0 * (dx * ddx + dy * ddy) + 6.0 * (x * cx + y * cy)
-            new = min(max(s - h * slope / (slope * slope - 0.5 * h * bend), 0.0), 1.0)
-            before, moved = moved, abs(new - s)
+            free = s - h * slope / (slope * slope - 0.5 * h * bend)
+            new = min(max(free, 0.0), 1.0)
+            # A step that was cut off says nothing of how the next ones shrink.
+            before, moved = step, abs(new - s)
+            step = moved if new == free else 0.0
             s = new
         x, y = ((cx * s + bx) * s + ax) * s + ox, ((cy * s + by) * s + ay) * s + oy
         value = x * x + y * y
@@ -252,7 +255,7 @@ def _try_arc(
         low = ox * power[0, 0] + oy * power[0, 1]
         high = (arcs[i, 1] - points[p, 0]) * end_x + (arcs[i, 2] - points[p, 1]) * end_y
         s = min(max(low / (low - high), 0.0), 1.0)
-        moved = before = 0.0
+        moved = before = step = 0.0
         for _ in range(_STEPS):
             x = y = dx = dy = ddx = ddy = dddx = dddy = 0.0
             for k in range(_DEGREE - 1, -1, -1):
@@ -265,8 +268,11 @@ def _try_arc(
             h = x * dx + y * dy
             slope = dx * dx + dy * dy + 2.0 * (x * ddx + y * ddy)
             bend = 6.0 * (dx * ddx + dy * ddy + x * dddx + y * dddy)
-            new = min(max(s - h * slope / (slope * slope - 0.5 * h * bend), 0.0), 1.0)
-            before, moved = moved, abs(new - s)
+            free = s - h * slope / (slope * slope - 0.5 * h * bend)
+            new = min(max(free, 0.0), 1.0)
+            # A step that was cut off says nothing of how the next ones shrink.
+            before, moved = step, abs(new - s)
+            step = moved if new == free else 0.0
             s = new
         x = y = 0.0
         for k in range(_DEGREE - 1, -1, -1):

@@ -334,5 +334,5 @@ def _foot(
         left = step if halved else step * (step / before) ** 3
         if min(left, step) <= _ERROR:
             break
-        before = step
+        before = 1e-300 if halved else step
     return t
