@@ -59,10 +59,7 @@ def cut_at_crossings(outline: Arclets, touching: float) -> Parts:
 
 def _in_chains(outline: Arclets, arclet: Ints, interval: Floats, begin: Bools) -> Parts:
     """Number the runs between crossings; a loop's parts are turned to begin with a crossing."""
-    first_of_loop = np.zeros(len(outline.start), dtype=bool)
-    # A loop's last arclet leads back to its first one.
-    back = outline.following <= np.arange(len(outline.start))
-    first_of_loop[outline.following[back]] = True
+    first_of_loop = np.diff(outline.run, prepend=-1) != 0
     starts = np.flatnonzero(first_of_loop[arclet] & (interval[:, 0] == 0.0))
     loop = np.searchsorted(starts, np.arange(len(arclet)), side="right") - 1
     sizes = np.diff(np.append(starts, len(arclet)))
