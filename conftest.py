@@ -27,3 +27,17 @@ def _leave(namespace: dict[str, Any]) -> None:
 pytest_collect_file = Sybil(
     parsers=[PythonCodeBlockParser()], patterns=["README.md"], setup=_enter, teardown=_leave
 ).pytest()
+
+
+def _drop_stale_kernels() -> None:
+    """Numba sees when a file changes, but not when one that it calls does (numba issue 1833)."""
+    folder = Path(__file__).parent / "src" / "splinesdf" / "kernels"
+    parts = [folder / f"{name}.py" for name in ("chains", "feet")]
+    changed = max(part.stat().st_mtime for part in parts)
+    for name in ("enclosure", "chains"):
+        for compiled in folder.glob(f"__pycache__/{name}.*.nb?"):
+            if compiled.stat().st_mtime < changed:
+                compiled.unlink()
+
+
+_drop_stale_kernels()

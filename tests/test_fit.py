@@ -7,17 +7,18 @@ import splinesdf as ss
 from tests import naive
 from tests.shapes import FORMULAS, UNIT, curve, gamma
 
-# Leaves of the prototype (true error, W); ours may need 1.15 times as many.
+# Leaves that were needed when this was written; ten more in a hundred are a loss.
 LEAVES = {
-    ("gamma1", 1e-2): 208,
-    ("gamma1", 2e-3): 448,
-    ("gamma1", 1e-3): 664,
-    ("gamma2", 1e-2): 205,
-    ("gamma2", 2e-3): 925,
-    ("gamma2", 1e-3): 1660,
-    ("gamma3", 1e-2): 766,
-    ("gamma3", 2e-3): 5635,
-    ("gamma3", 1e-3): 13531,
+    ("gamma1", 1e-2): 124,
+    ("gamma1", 2e-3): 364,
+    ("gamma1", 1e-3): 472,
+    ("gamma2", 1e-2): 133,
+    ("gamma2", 2e-3): 577,
+    ("gamma2", 1e-3): 1114,
+    ("gamma2", 1e-4): 10195,
+    ("gamma3", 1e-2): 574,
+    ("gamma3", 2e-3): 3937,
+    ("gamma3", 1e-3): 8131,
 }
 
 
@@ -50,9 +51,9 @@ def test_tolerance_is_kept_with_few_leaves(
     near = distance < 2 * tolerance
     signed = np.where(ss.signed_distance(gamma(name), points[near]) < 0, -1.0, 1.0)
     error[near] = np.abs(value[near] - signed * distance[near])
-    assert error.max() <= tolerance
-    assert result.error >= 0.999 * error.max()
-    assert result.cells <= 1.15 * LEAVES[name, tolerance]
+    assert error.max() <= result.bound <= tolerance
+    assert result.error <= result.bound <= 1.0051 * result.error
+    assert result.cells <= 1.1 * LEAVES[name, tolerance]
     assert result.stopped == "reached"
 
 
@@ -64,7 +65,7 @@ def test_every_space_keeps_the_tolerance(space: str, operator: str) -> None:
     xmin, ymin, xmax, ymax = result.spline.domain
     points = np.random.default_rng(1).uniform((xmin, ymin), (xmax, ymax), (100_000, 2))
     error = np.abs(result.spline(points) - ss.signed_distance(gamma("gamma2"), points)).max()
-    assert error <= result.error <= tolerance
+    assert error <= result.bound <= tolerance
     assert result.centre_error <= result.error
     assert [step.cells for step in result.history] == sorted(s.cells for s in result.history)
 

@@ -16,6 +16,7 @@ from splinesdf.meshes import Grid, Quadtree
 from splinesdf.quasi import quasi_interpolate
 from splinesdf.spaces import hierarchical_ordinates
 from splinesdf.spline import SplineSDF
+from tests.naive_tree import refine
 
 PARAMETERS = np.linspace(0.0, 1.0, 7)
 
@@ -36,7 +37,7 @@ def random_spline(seed: int, *, coarse: bool = False) -> SplineSDF:
     m, n = (int(count) for count in random.integers(2, 5, 2))
     mesh = Quadtree.uniform((0.0, 0.0, float(m), float(n)), m, n)
     for _ in range(random.integers(0, 4)):
-        mesh = mesh.refine(random.random(len(mesh.leaves)) < 0.15)
+        mesh = refine(mesh, random.random(len(mesh.leaves)) < 0.15)
 
     def coefficients(_level: int, cells: np.ndarray) -> np.ndarray:
         values = random.normal(size=len(cells))

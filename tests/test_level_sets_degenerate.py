@@ -15,6 +15,7 @@ from splinesdf.meshes import Grid, Quadtree
 from splinesdf.quasi import quasi_interpolate
 from splinesdf.spaces import hierarchical_ordinates, tensor_ordinates
 from splinesdf.spline import SplineSDF
+from tests.naive_tree import refine
 
 Coefficients = Callable[[np.random.Generator, tuple[int, ...]], np.ndarray]
 
@@ -37,7 +38,7 @@ def tensor(random: np.random.Generator, draw: Coefficients) -> SplineSDF:
 def hierarchical(random: np.random.Generator, draw: Coefficients) -> SplineSDF:
     mesh = Quadtree.uniform((0.0, 0.0, 1.0, 1.0), 3, 4)
     for _ in range(3):
-        mesh = mesh.refine(random.random(len(mesh.leaves)) < 0.08)
+        mesh = refine(mesh, random.random(len(mesh.leaves)) < 0.08)
     return SplineSDF(
         mesh, hierarchical_ordinates(mesh, lambda _, cells: draw(random, (len(cells),)))
     )

@@ -9,6 +9,7 @@ import splinesdf as ss
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.quasi import quasi_interpolate
 from splinesdf.spline import SplineSDF, bspline
+from tests.naive_tree import refine
 from tests.shapes import UNIT
 
 DATA = Path(__file__).parent / "data"
@@ -20,7 +21,7 @@ def random_quadtree(seed: int, rounds: int = 4) -> Quadtree:
     random = np.random.default_rng(seed)
     mesh = Quadtree.uniform(UNIT, 4, 5)
     for _ in range(rounds):
-        mesh = mesh.refine(random.random(len(mesh.leaves)) < 0.08)
+        mesh = refine(mesh, random.random(len(mesh.leaves)) < 0.08)
     return mesh
 
 
@@ -149,36 +150,6 @@ def test_order_of_convergence(operator: str, order: int, mesh_type: type) -> Non
     assert slope == pytest.approx(order, abs=0.1)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_spline_is_c1_across_levels(seed: int) -> None:
-    mesh = random_quadtree(seed)
-    spline = quasi_interpolate(smooth, mesh, "W")
-    boxes = mesh.boxes
-    share = np.random.default_rng(seed).uniform(0, 1, len(boxes))
-    for axis in (0, 1):
-        inner = boxes[:, axis] > 0
-        at = boxes[inner][:, :2].copy()
-        at[:, 1 - axis] += (share * (boxes[:, 3 - axis] - boxes[:, 1 - axis]))[inner]
-        own = np.flatnonzero(inner)
-        step = np.zeros(2)
-        step[axis] = 1e-7
-        other = mesh.locate(at - step)
-        assert (own != other).all()
-        for value, gradient in [(one_sided(spline, own, at), one_sided(spline, other, at))]:
-            assert np.max(np.abs(value - gradient)) < 1e-12 * 2**mesh.depth
-
-
-def one_sided(spline: SplineSDF, cells: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Value and gradient at points of the closed cells, as these cells have them: (n, 3)."""
-    from splinesdf.kernels.ordinates import evaluate
-    from splinesdf.spaces.cells import frames, power_form
-
-    value, gradient = np.empty(len(points)), np.empty((len(points), 2))
-    boxes, powers = frames(spline.mesh.boxes), power_form(spline.ordinates)
-    evaluate(boxes, powers, cells, points, value, gradient, np.empty((0, 3)))
-    return np.column_stack([value, gradient])
-
-
 def test_gradient_and_hessian_are_the_derivatives() -> None:
     spline = quasi_interpolate(smooth, random_quadtree(7), "W")
     inner = POINTS[(np.abs(POINTS - 0.5) < 0.49).all(axis=1)]
@@ -202,10 +173,3 @@ def test_operators_that_do_not_fit_are_refused() -> None:
         quasi_interpolate(smooth, GRID, "S")
     with pytest.raises(ss.InputError, match="operator"):
         quasi_interpolate(smooth, GRID, "Q")
-
-
-def test_outside_the_domain_is_nan() -> None:
-    spline = quasi_interpolate(smooth, GRID, "W")
-    assert np.isnan(spline([(1.1, 0.5), (np.nan, 0.5), (0.5, -1e-9)])).all()
-    assert np.isfinite(spline([(0, 0), (1, 1), (1, 0.5)])).all()
-    assert not spline.inside((2.0, 2.0))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
+from splinesdf._arrays import Bools, Floats, Ints
 
 
 class Arclets(NamedTuple):
@@ -42,6 +42,20 @@ class Arclets(NamedTuple):
 # A row of ``tree``: a segment's first point (0, 1), the vector to its second (2, 3), 1 / its
 # squared length, or 0 for a point (4), the radius around it in which all of the node's arclets
 # lie (5), first and past-the-end arclet (6, 7).
+
+
+class Bends(NamedTuple):
+    """How arclets bend and how they are joined, see `splinesdf.curves.bends`."""
+
+    # (n, 11) smallest and largest curvature, positive to the left; largest change of curvature
+    # with arc length; curvature at start and end; unit tangents at start and end; largest
+    # speed; how far the arclet is from its chord. Infinite ranges where the speed may vanish.
+    rows: Floats
+    # (n, 5, 2 d - 1) second differences of the Bernstein coefficients of the square of the length
+    # of an arclet minus its start, of its x and y, the sums of their absolute values, and its
+    # chord's square; infinite in the first row beyond an arclet's own degree.
+    second: Floats
+    previous: Ints  # (n,) the arclet that leads to this one, -1 for none
 
 
 class Cells(NamedTuple):
@@ -86,3 +100,40 @@ class Scratch(NamedTuple):
     spans: Floats  # (depth, 2) their parameters
     nodes: Ints  # (n,) of the tree, still to be looked at
     bounds: Floats  # (n,) that nothing under them is nearer than
+
+
+class Asked(NamedTuple):
+    """Triangles of a spline on which its error is to be enclosed, and when to stop."""
+
+    triangles: Floats  # (n, 12) corners A B C, coefficients AA BB CC AB BC CA
+    group: Ints  # (n,) which of the lists of candidates is for it
+    anchor: Floats  # (n, 3) a point and its exact signed distance
+    low: Floats  # (n, 2) what is known of the largest error on its halves: at least this
+    bands: Floats  # (k, 2) only where the distance or the spline is in one; none for everywhere
+    largest: float  # largest coordinate of all, for rounding
+    threshold: float  # an error below it need not be known better
+    tight: float  # nor one that is known to this share of the largest on its triangle
+    enough: float  # a triangle that is known to exceed it is left
+    effort: int  # parts of a half that may be looked at
+    patience: int  # halvings after which a part of which nothing is known is passed on as open
+
+
+class Brackets(NamedTuple):
+    """What is known of the largest error on the halves of triangles, and parts still open."""
+
+    low: Floats  # (n, 2) it is at least this
+    high: Floats  # (n, 2) and at most this, not counting open parts
+    counts: Bools  # (n, 2) whether it meets a band
+    open_count: Ints  # (1,)
+    open_from: Ints  # (m,) the half that an open part is of: 2 triangle + (0 or 1)
+    open_triangles: Floats  # (m, 12) corners, coefficients
+
+
+class Nodes(NamedTuple):
+    """A quadtree that grows, see `splinesdf.kernels.hierarchy`."""
+
+    shape: Ints  # (2,) roots each way in the domain; one more on each side around it
+    level: Ints  # (n,)
+    place: Ints  # (n, 2) the cell of its level, from -1 on
+    child: Ints  # (n,) first of four children, -1 for none
+    near: Ints  # (n, 9) the 3 x 3 nodes around, negative where there is none

@@ -102,11 +102,19 @@ def _tolerance_option(command: Command) -> Command:
 @commands.command()
 @_shape_options
 @_tolerance_option
-@click.option("--band", type=float, nargs=2, help="Keep the tolerance only where LO <= u <= HI.")
+@click.option(
+    "--band",
+    "band",
+    type=float,
+    nargs=2,
+    multiple=True,
+    help="Keep the tolerance only where LO <= u <= HI; may be given again.",
+)
 @click.option(
     "--space", default="hierarchical", help="hierarchical, tensor or uniform.", show_default=True
 )
-@click.option("--operator", default="W", help="W, V, S or P.", show_default=True)
+@click.option("--operator", help="S, W, V or P.  [default: S; W on a tensor grid]")
+@click.option("--no-proof", is_flag=True, help="Sample what a proof takes a closer look for.")
 @click.option("--domain", type=float, nargs=4, help="XMIN YMIN XMAX YMAX.")
 @click.option("--max-cells", type=click.IntRange(min=1), help="Give up beyond so many cells.")
 @click.option("-o", "--output", help="Save the fit as .npz.")
@@ -121,6 +129,7 @@ def fit(
     picture: str | None,
     as_json: bool,
     max_cells: int | None,
+    no_proof: bool,
     **options: Any,
 ) -> None:
     """Fit a signed distance function to SHAPE within a tolerance."""
@@ -134,6 +143,7 @@ def fit(
         check_picture(picture)
     if max_cells is not None:
         options["max_cells"] = max_cells
+    options |= {"band": options["band"] or None, "certify": not no_proof}
     began = time.perf_counter()
     result = _fit(source, _tolerance(source, tolerance), **options)
     seconds = time.perf_counter() - began
@@ -141,14 +151,11 @@ def fit(
         result.spline.save(output)
     if picture is not None:
         _picture(result, source, picture)
-    space, operator = options["space"], options["operator"]
     if as_json:
-        figures = report.fit_figures(
-            result, source, space=space, operator=operator, seconds=seconds
-        )
+        figures = report.fit_figures(result, source, seconds=seconds)
         click.echo(json.dumps(figures, indent=2))
     else:
-        report.print_fit(result, source, f"{space}, {operator}", seconds)
+        report.print_fit(result, source, seconds)
         report.print_written(output, picture)
 
 
@@ -190,8 +197,8 @@ def offset(
 def query(source: str, points: str, output: str | None, fill: str | None, close: bool) -> None:
     """Distance and gradient at the POINTS of a CSV file: x,y,distance,gx,gy.
 
-    From a saved fit, or exact from a shape. Not a number: a point that is not one or is outside
-    the fit's domain; a gradient on the boundary itself.
+    From a saved fit, or exact from a shape. Not a number: a point that is not one; a shape's
+    gradient on the boundary itself.
     """
     if Path(source).suffix.lower() == ".npz":
         spline = ss.load(source)
@@ -262,6 +269,8 @@ def info(file: str, fill: str | None, close: bool) -> None:
             domain=report.box_text(spline.domain),
             y="downward" if spline.y_down else "upward",
             size=f"{Path(file).stat().st_size:,} bytes",
+            shape="not in the file" if spline.shape is None else report.describe(spline.shape),
+            **report.provenance(spline.made),
         )
     else:
         shape = _read(file, fill, close)
@@ -295,7 +304,7 @@ def demo(output: str) -> None:
         ss.write(files[1], contours)
         ss.write(files[2], contours)
     _picture(result, source, files[3], contours)
-    report.print_fit(result, source, "hierarchical, W", seconds)
+    report.print_fit(result, source, seconds)
     report.print_offsets(source, contours, _DEMO_DISTANCES, _DEMO_TOLERANCE)
     report.print_written(*files)
 

@@ -1,180 +1,304 @@
-"""The true error of a spline: the maximum of |s - u| over cells, not its value at their centers.
+"""The true error of a spline: proved brackets of the maximum of |s - u| over cells.
 
-    each cell: 9 x 9 samples ─→ largest |e|, largest step between neighbors
-             └─ squares whose corners and steps leave room for more than a threshold
-                     └─ 5 x 5 samples in each ─→ again, four times finer each time
-
-Away from the medial axis e is smooth and the first samples would do; where the axis crosses a
-cell the maximum sits on a ridge between them, and the second search climbs it.
+triangles ─→ what can be closest there (culling) ─→ branch and bound (kernels.enclosure)
+    ↑                                                     │ parts that stay open
+    └── halved twice ←── not good enough ←── 1-Lipschitz bound around an exact distance
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf.spaces.cells import sampling_matrix
+from splinesdf._blocks import in_blocks
+from splinesdf._tables import Asked, Brackets, Candidates
+from splinesdf.curves.shape import Shape
+from splinesdf.distance import signed_distance
+from splinesdf.spaces.cells import TRIANGLES, center_ordinates
 from splinesdf.spline import SplineSDF
+from splinesdf.trial import Known
 
-Function = Callable[[Floats], Floats]
-
-# Samples a side. Fewer: cells at a kink pass by luck and the search below has more to find; more:
-# the cost of a fit, nearly all of which is these samples, grows with the square.
-SAMPLES = 9
-# Rounds of the search; each divides a square by four, so the last one looks at 1/512 of a cell's
-# side, where what is still missed is under a hundredth of what a kink adds.
-_ROUNDS = 3
-_DIVISIONS = 4
-# Cells a batch: 81 samples of 2000 cells and what the distance needs for them stay near 10 MB.
-_BATCH = 2000
-
-
-class CellErrors(NamedTuple):
-    """What the first samples say of each cell."""
-
-    largest: Floats  # (n,) largest |e| over the samples
-    step: Floats  # (n,) largest difference of e between neighboring samples
-    center: Floats  # (n,) |e| at the center: the paper's error
-
-
-def _square(count: int) -> Floats:
-    """Offsets from the center, in cells, of count x count samples; shape (count, count, 2)."""
-    line = np.linspace(-0.5, 0.5, count)
-    return np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1)
+# Triangles a thread takes at a time. Fewer: the pool's overhead shows; more: the last block keeps
+# one core busy alone.
+_BLOCK = 512
+# Open parts that a triangle of a block may leave on average; beyond it, it is open as a whole.
+_OPEN = 32
+# A bracket of an error is as narrow as this share of it, unless less is asked.
+TIGHT = 0.005
+# Halvings of a cell's triangles before what has no structure is asked for exact distances, which
+# cost more than a halving; open triangles are asked at once.
+_PATIENCE = 3
+# How often open triangles are halved twice. Twelve times divide the length by 4096: the Lipschitz
+# bound is then within half a percent of what is large in a cell. Without a proof once is all.
+_ROUNDS, _SAMPLED_ROUNDS = 12, 1
+# Parts of a cell that are looked at to know the largest error of all.
+_EFFORT = 20_000
+# Cells whose error is looked at together when the largest of all is sought. More: some in vain;
+# fewer: more rounds.
+_TOGETHER = 64
+# Open triangles at a time: 100 MB. Beyond it they keep the bound that they have.
+_MOST_OPEN = 400_000
 
 
-_OFFSETS = _square(SAMPLES)
+# The corner (SW SE NW NE) of a cell at which each of its eighths lies.
+_CORNER = np.array([corner for a, _, b in TRIANGLES for corner in (a, b)])
 
 
-def cell_errors(function: Function, spline: SplineSDF, cells: Ints) -> CellErrors:
-    """Sample the error over the given cells, corners and sides included."""
-    offsets = _OFFSETS.reshape(-1, 2)
-    matrix = sampling_matrix(offsets)
-    result = CellErrors(*(np.empty(len(cells)) for _ in range(3)))
-    for first in range(0, len(cells), _BATCH):
-        part = slice(first, first + _BATCH)
-        chosen = cells[part]
-        error = _errors(function, spline, chosen, offsets, matrix)
-        square = error.reshape(-1, SAMPLES, SAMPLES)
-        result.largest[part] = np.abs(error).max(axis=1)
-        result.center[part] = np.abs(square[:, SAMPLES // 2, SAMPLES // 2])
-        result.step[part] = np.maximum(
-            np.abs(np.diff(square, axis=1)).max(axis=(1, 2)),
-            np.abs(np.diff(square, axis=2)).max(axis=(1, 2)),
-        )
-    return result
+class Wanted(NamedTuple):
+    """When an error is known well enough."""
+
+    threshold: float  # below it, it need not be known better
+    enough: float = np.inf  # an eighth that is known to exceed it is left
+    tight: float = TIGHT  # bracketed to this share of it
+    effort: int = 100  # parts of an eighth that may be looked at before it is left as it is
+    proved: bool = True  # otherwise what stays open is sampled and taken as it is
 
 
-def _errors(
-    function: Function, spline: SplineSDF, cells: Ints, offsets: Floats, matrix: Floats
-) -> Floats:
-    boxes = spline.mesh.boxes[cells]
-    centers, sides = 0.5 * (boxes[:, :2] + boxes[:, 2:]), boxes[:, 2:] - boxes[:, :2]
-    points = centers[:, None] + offsets * sides[:, None]
-    exact = function(points.reshape(-1, 2)).reshape(len(cells), -1)
-    return spline.ordinates[cells] @ matrix - exact
+class _Search(NamedTuple):
+    """What does not change while triangles are halved."""
+
+    shape: Shape
+    bands: Floats
+    wanted: Wanted
+    largest: float
+    anchor: Floats  # (n, 3) of each cell: its middle and its exact distance
+    low: Floats  # (8 n,) of the eighths of cells: the error is at least this
+    high: Floats  # (8 n,) and at most this; improved step by step
+    counts: Bools  # (8 n,)
 
 
-def sharpen(
-    function: Function, spline: SplineSDF, cells: Ints, errors: CellErrors, threshold: float
-) -> Floats:
-    """Largest |e| of each cell again, searched wherever it may exceed the threshold.
+def cell_errors(
+    shape: Shape, spline: SplineSDF, cells: Ints, center: Floats, bands: Floats, wanted: Wanted
+) -> Known:
+    """Bracket the largest error in each of some cells.
 
     Parameters
     ----------
+    shape : Shape
+    spline : SplineSDF
     cells : ndarray, shape (n,)
-    errors : CellErrors
-        Of these cells.
-    threshold : float
-        Only what lies above it is looked for; below it the first samples stand.
+    center : ndarray, shape (n,)
+        Exact signed distances at the centers of these cells.
+    bands : ndarray, shape (k, 2)
+        Only what may lie in one of them counts; all does if there is none.
+    wanted : Wanted
+    """
+    boxes = spline.mesh.boxes[cells] - np.tile(shape.boundary.origin, 2)
+    count = len(cells)
+    search = _Search(
+        shape=shape,
+        bands=bands,
+        wanted=wanted,
+        largest=float(max(np.abs(boxes).max(initial=0.0), np.abs(shape.boundary.boxes[0]).max())),
+        anchor=np.column_stack([0.5 * (boxes[:, :2] + boxes[:, 2:]), center]),
+        low=np.zeros(8 * count),
+        high=np.zeros(8 * count),
+        counts=np.zeros(8 * count, dtype=np.bool_),
+    )
+    halves = np.arange(8 * count).reshape(-1, 2)
+    part, triangles = _enclose(search, boxes, halves, _quarters(boxes, spline.ordinates[cells]))
+    rounds = _ROUNDS if wanted.proved else _SAMPLED_ROUNDS
+    for number in range(rounds + 1):
+        if len(part) == 0:
+            break
+        last = number == rounds or len(part) > _MOST_OPEN
+        part, triangles = _sample(search, part, triangles, last)
+        corners = triangles[:, :6].reshape(-1, 3, 2)
+        around = np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1)
+        part, triangles = _enclose(search, around, np.stack([part, part], axis=1), triangles)
+    low = search.low.reshape(-1, 8)
+    high = np.maximum(low, search.high.reshape(-1, 8))
+    unsure = high > wanted.threshold if wanted.proved else low > wanted.threshold
+    over = np.stack([np.any(unsure & (k == _CORNER), axis=1) for k in range(4)], axis=1)
+    counts = np.any(search.counts.reshape(-1, 8), axis=1)
+    return Known(low.max(axis=1), high.max(axis=1), counts, over)
+
+
+def _enclose(
+    search: _Search, boxes: Floats, halves: Ints, triangles: Floats
+) -> tuple[Ints, Floats]:
+    """Improve what is known of eighths by triangles, as many in each box; what stays open.
+
+    ``halves`` (n, 2) says of which eighth each half of a triangle is.
+    """
+    from splinesdf.kernels.culling import MOST_KEPT, cull_boxes  # Numba loads only when it is used
+    from splinesdf.kernels.enclosure import enclose
+
+    if len(halves) == 0:
+        return halves[:, 0], triangles
+    boundary, bends, wanted = search.shape.boundary, search.shape.bends, search.wanted
+    in_box = len(halves) // len(boxes)
+    known = search.low[halves]
+    low, high = np.empty(halves.shape), np.empty(halves.shape)
+    counts = np.empty(halves.shape, dtype=np.bool_)
+    anchor = search.anchor[halves[:, 0] // 8]
+    left: dict[int, tuple[Ints, Floats]] = {}
+
+    def work(block: slice) -> None:
+        here = boxes[block.start // in_box : block.stop // in_box]
+        starts = np.empty(len(here) + 1, dtype=np.int64)
+        nodes = np.empty(len(here) * MOST_KEPT, dtype=np.int64)
+        cull_boxes(boundary, here, starts, nodes)
+        size = block.stop - block.start
+        asked = Asked(
+            triangles=triangles[block],
+            group=np.arange(size) // in_box,
+            anchor=anchor[block],
+            low=known[block],
+            bands=search.bands,
+            largest=search.largest,
+            threshold=wanted.threshold,
+            tight=wanted.tight,
+            enough=wanted.enough,
+            effort=wanted.effort,
+            patience=_PATIENCE if in_box > 1 else 1,
+        )
+        brackets = Brackets(
+            low=low[block],
+            high=high[block],
+            counts=counts[block],
+            open_count=np.zeros(1, dtype=np.int64),
+            open_from=np.empty(size * _OPEN, dtype=np.int64),
+            open_triangles=np.empty((size * _OPEN, 12)),
+        )
+        enclose(boundary, bends, Candidates(starts, nodes), asked, brackets)
+        found = int(brackets.open_count[0])
+        owner = halves[block].reshape(-1)[brackets.open_from[:found]]
+        left[block.start] = owner, brackets.open_triangles[:found].copy()
+
+    in_blocks(len(halves), work, size=_BLOCK)
+    np.maximum.at(search.low, halves, low)
+    np.maximum.at(search.high, halves, high)
+    search.counts[halves[counts]] = True
+    owners, pieces = zip(*(left[first] for first in sorted(left)), strict=True)
+    part, triangles = np.concatenate(owners), np.concatenate(pieces)
+    undecided = search.low[part] <= wanted.enough
+    return part[undecided], triangles[undecided]
+
+
+def _sample(search: _Search, part: Ints, triangles: Floats, last: bool) -> tuple[Ints, Floats]:
+    """Bound triangles by the exact distance in one point of each; quarters of what is left.
+
+    Within r of a point p, |s - u| <= |s(p) - u(p)| + (1 + G) r, with G the largest slope of s:
+    the distance is 1-Lipschitz.
+    """
+    low, high, counts = search.low, search.high, search.counts
+    wanted = search.wanted
+    middle = 0.5 * (triangles[:, 0:2] + triangles[:, 2:4])
+    arms = triangles[:, [0, 1, 4, 5]].reshape(-1, 2, 2) - middle[:, None]
+    reach = np.sqrt(np.sum(arms * arms, axis=2).max(axis=1))
+    exact = signed_distance(search.shape, middle + search.shape.boundary.origin)
+    c = triangles[:, 6:]
+    error = np.abs(0.25 * (c[:, 0] + 2.0 * c[:, 3] + c[:, 1]) - exact)
+    bound = error + (1.0 + _steepest(triangles)) * reach
+    if not wanted.proved and last:
+        bound = error
+    meets = np.ones(len(part), dtype=np.bool_)
+    if len(search.bands):
+        meets = _meets(search.bands, exact, reach, c)
+    np.maximum.at(low, part[meets], error[meets])
+    counts[part[meets]] = True
+    known = low[part]
+    enough = np.maximum(wanted.threshold, (1.0 + wanted.tight) * known)
+    hopeless = np.bincount(part, minlength=len(low))[part] > wanted.effort
+    closed = meets & ((bound <= enough) | (known > wanted.enough) | hopeless | last)
+    bound[known > wanted.enough] = np.inf
+    np.maximum.at(high, part[closed], bound[closed])
+    goes_on = meets & ~closed
+    return np.repeat(part[goes_on], 4), _halves(_halves(triangles[goes_on]))
+
+
+def largest_error(
+    shape: Shape,
+    spline: SplineSDF,
+    center: Floats,
+    bands: Floats | None = None,
+    known: Known | None = None,
+) -> tuple[float, float]:
+    """Bracket the largest error over all cells, as narrowly as `TIGHT` unless that cannot be had.
+
+    Parameters
+    ----------
+    shape : Shape
+    spline : SplineSDF
+    center : ndarray, shape (n_cells,)
+        Exact signed distances at the centers of the cells.
+    bands : ndarray, shape (k, 2), optional
+    known : Known, optional
+        What is already known of all cells.
 
     Returns
     -------
-    ndarray, shape (n,)
-
-    Notes
-    -----
-    A square of one sample step holds no more than its corners' largest |e| plus one step's
-    change, if e changes nowhere faster than between the samples seen so far. That is an
-    estimate, not a proof; the steps of a kink are all seen by the first samples.
+    low, high : float
     """
-    largest = errors.largest.copy()
-    candidates = np.flatnonzero(largest + errors.step > threshold)
-    for first in range(0, len(candidates), _BATCH):
-        rows = candidates[first : first + _BATCH]
-        _climb(function, spline, cells[rows], errors.step[rows], rows, threshold, largest)
-    return largest
+    bands = np.empty((0, 2)) if bands is None else bands
+    if known is None:
+        error = np.abs(spline.ordinates[:, 4:].mean(axis=1) - center)
+        wanted = Wanted((1.0 + TIGHT) * float(error.max()))
+        known = cell_errors(shape, spline, np.arange(len(center)), center, bands, wanted)
+    low, high = (np.where(known.counts, values, 0.0) for values in known[:2])
+    while True:
+        largest = float(low.max(initial=0.0))
+        cells = np.flatnonzero(high > (1.0 + TIGHT) * largest)
+        # The most promising first: once its error is known, few others can exceed it.
+        cells = cells[np.argsort(-high[cells], kind="stable")][:_TOGETHER]
+        wanted = Wanted((1.0 + TIGHT) * largest, effort=_EFFORT)
+        found = cell_errors(shape, spline, cells, center[cells], bands, wanted)
+        improved = (found.low > low[cells]) | (found.high < high[cells])
+        if not improved.any():  # or no cell was left
+            return largest, float(high.max(initial=0.0))
+        low[cells] = np.maximum(low[cells], found.low)
+        high[cells] = np.minimum(high[cells], found.high)
 
 
-def _climb(
-    function: Function,
-    spline: SplineSDF,
-    cells: Ints,
-    step: Floats,
-    rows: Ints,
-    threshold: float,
-    largest: Floats,
-) -> None:
-    """Search squares of the given cells, finer and finer; raises ``largest[rows]``."""
-    offsets = _OFFSETS.reshape(-1, 2)
-    error = np.abs(_errors(function, spline, cells, offsets, sampling_matrix(offsets)))
-    low = _OFFSETS[:-1, :-1].reshape(-1, 2)
-    side = 1.0 / (SAMPLES - 1)
-    owner, square = np.nonzero(
-        _corner_maximum(error.reshape(-1, SAMPLES, SAMPLES)) + step[:, None] > threshold
-    )
-    low = low[square]
-    for _ in range(_ROUNDS):
-        if len(owner) == 0:
-            return
-        step = step / _DIVISIONS
-        fine = (_square(_DIVISIONS + 1) + 0.5) * side
-        side /= _DIVISIONS
-        count = (_DIVISIONS + 1) ** 2
-        at = (low[:, None] + fine.reshape(-1, 2)).reshape(-1, 2)
-        error = _error_at(function, spline, np.repeat(cells[owner], count), at)
-        error = error.reshape(-1, _DIVISIONS + 1, _DIVISIONS + 1)
-        np.maximum.at(largest, rows[owner], error.max(axis=(1, 2)))
-        # What a square's corners and its step cannot lift above both what is known of this
-        # cell and the threshold is left.
-        known = np.maximum(threshold, largest[rows[owner]])
-        which, square = np.nonzero(_corner_maximum(error) + step[owner][:, None] > known[:, None])
-        low = low[which] + fine[:-1, :-1].reshape(-1, 2)[square]
-        owner = owner[which]
+def _meets(bands: Floats, exact: Floats, reach: Floats, c: Floats) -> Bools:
+    """Whether the distance or the spline can take a value of a band on triangles."""
+    least, most = c.min(axis=1)[:, None], c.max(axis=1)[:, None]
+    lows, highs = bands.T
+    distance = (exact + reach)[:, None] >= lows
+    distance &= (exact - reach)[:, None] <= highs
+    return np.asarray(np.any(distance | ((most >= lows) & (least <= highs)), axis=1))
 
 
-def _corner_maximum(values: Floats) -> Floats:
-    """Of the four corners of every square of a sample grid: (n, k, k) -> (n, (k - 1)²)."""
-    rows = np.maximum(values[:, :-1], values[:, 1:])
-    return np.maximum(rows[:, :, :-1], rows[:, :, 1:]).reshape(len(values), -1)
+def _quarters(boxes: Floats, ordinates: Floats) -> Floats:
+    """The four triangles of cells, whose halves `_CORNER` tells: (4 n, 12)."""
+    beside, center = center_ordinates(ordinates)
+    x, y = boxes[:, [0, 2, 0, 2]], boxes[:, [1, 1, 3, 3]]
+    mx, my = 0.5 * (boxes[:, 0] + boxes[:, 2]), 0.5 * (boxes[:, 1] + boxes[:, 3])
+    quarters = [
+        np.column_stack(
+            [
+                *(x[:, a], y[:, a], x[:, b], y[:, b], mx, my),
+                *(ordinates[:, a], ordinates[:, b], center),
+                *(ordinates[:, side], beside[:, b], beside[:, a]),
+            ]
+        )
+        for a, side, b in TRIANGLES
+    ]
+    return np.stack(quarters, axis=1).reshape(-1, 12)
 
 
-def _error_at(function: Function, spline: SplineSDF, cells: Ints, offsets: Floats) -> Floats:
-    boxes = spline.mesh.boxes[cells]
-    low, high = boxes[:, :2], boxes[:, 2:]
-    points = 0.5 * (low + high) + offsets * (high - low)
-    # Rounding must not put a sample on the far side of the domain's border.
-    domain = np.array(spline.domain)
-    points = np.clip(points, domain[:2], domain[2:])
-    return np.abs(spline(points) - function(points))
+def _steepest(triangles: Floats) -> Floats:
+    """The largest slope of quadratics on triangles; it is taken at a corner."""
+    u, v = triangles[:, 0:2] - triangles[:, 4:6], triangles[:, 2:4] - triangles[:, 4:6]
+    aa, bb, cc, ab, bc, ca = triangles[:, 6:].T
+    scale = 2.0 / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    squared = np.zeros(len(triangles))
+    for along_u, along_v in ((aa - ca, ab - bc), (ab - ca, bb - bc), (ca - cc, bc - cc)):
+        x = along_u * v[:, 1] - along_v * u[:, 1]
+        y = along_v * u[:, 0] - along_u * v[:, 0]
+        squared = np.maximum(squared, x * x + y * y)
+    return np.asarray(scale * np.sqrt(squared))
 
 
-def may_meet(
-    function: Function, spline: SplineSDF, cells: Ints, band: tuple[float, float]
-) -> Bools:
-    """Whether the exact distance or the spline can take a value of the band in each cell.
-
-    The distance is 1-Lipschitz, so within a cell it stays within half a diagonal of its value at
-    the center; the spline stays between its smallest and largest ordinate.
-    """
-    boxes = spline.mesh.boxes[cells]
-    low, high = band
-    reach = 0.5 * np.hypot(boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1])
-    value = function(0.5 * (boxes[:, :2] + boxes[:, 2:]))
-    exact = (value + reach >= low) & (value - reach <= high)
-    ordinates = spline.ordinates[cells]
-    near = (ordinates.max(axis=1) >= low) & (ordinates.min(axis=1) <= high)
-    return np.asarray(exact | near)
+def _halves(triangles: Floats) -> Floats:
+    """Both halves of triangles, one after the other: (n, 12) -> (2 n, 12)."""
+    a, b, c = triangles[:, 0:2], triangles[:, 2:4], triangles[:, 4:6]
+    aa, bb, cc, ab, bc, ca = triangles[:, 6:].T
+    am, mb, mc = 0.5 * (aa + ab), 0.5 * (ab + bb), 0.5 * (ca + bc)
+    mm, m = 0.5 * (am + mb), 0.5 * (a + b)
+    one = np.column_stack([c, a, m, cc, aa, mm, ca, am, mc])
+    other = np.column_stack([b, c, m, bb, cc, mm, bc, mc, mb])
+    return np.stack([one, other], axis=1).reshape(-1, 12)

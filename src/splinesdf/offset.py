@@ -17,9 +17,6 @@ from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.fit import fit
 
-# The fit's error is measured, not proved; this share of the tolerance is asked of it, so that the
-# hundredth that the measurement may miss does not show.
-_RESERVE = 0.99
 # Points an arc at which `deviation` measures: an arc's error has one or two bumps.
 _MEASURED = np.linspace(0.0, 1.0, 9)
 
@@ -58,7 +55,7 @@ def offset(shape: Shape, distances: ArrayLike, *, tolerance: float) -> list[Cont
         raise InputError(f"expected distances as numbers, got {distances!r}") from error
     if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
         raise InputError(f"expected one or more finite distances, got {distances!r}")
-    asked = _RESERVE * positive(tolerance, "tolerance")
+    asked = positive(tolerance, "tolerance")
     result = []
     for distance in wanted.tolist():
         fitted = fit(shape, tolerance=asked, band=(distance, distance))

@@ -31,7 +31,7 @@ Operator = Literal["V", "W", "S", "P"]
 _CENTER = ((0.0, 0.0),)
 _CORNERS = ((-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5))
 _NEIGHBORS = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
-_STENCILS: dict[str, tuple[tuple[tuple[float, float], ...], tuple[float, ...]]] = {
+STENCILS: dict[str, tuple[tuple[tuple[float, float], ...], tuple[float, ...]]] = {
     "V": (_CENTER, (1.0,)),
     "W": (_CENTER + _CORNERS, (2.0, -0.25, -0.25, -0.25, -0.25)),
     "S": (_CENTER + _NEIGHBORS, (1.5, -0.125, -0.125, -0.125, -0.125)),
@@ -76,7 +76,7 @@ def quasi_interpolate(function: Function, mesh: Mesh, operator: str = "W") -> Sp
 
 def check_operator(operator: str) -> None:
     """Refuse names that are no operator."""
-    if not isinstance(operator, str) or operator not in _STENCILS:
+    if not isinstance(operator, str) or operator not in STENCILS:
         raise InputError(f"expected an operator of V, W, S, P, got {operator!r}")
 
 
@@ -109,7 +109,7 @@ def _grid_coefficients(function: Function, mesh: Grid, operator: str) -> Floats:
 def _apply(
     function: Function, operator: str, centers: Floats, sides: Floats, cells: Ints
 ) -> Floats:
-    offsets, weights = _STENCILS[operator]
+    offsets, weights = STENCILS[operator]
     result = np.zeros(len(centers))
     mirror = np.ones((len(centers), 2))
     if operator == "P":

@@ -15,6 +15,7 @@ from splinesdf.fit import FitResult
 from splinesdf.meshes import Box
 from splinesdf.offset import deviation
 from splinesdf.paper import Row
+from splinesdf.provenance import Provenance
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -42,15 +43,18 @@ def print_pairs(**pairs: str) -> None:
     _console().print(table, highlight=False)
 
 
-def print_fit(result: FitResult, shape: Shape, method: str, seconds: float) -> None:
+def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
     """What was fitted, how well, and what it took."""
-    where = "where the band is" if result.band else "over the whole domain"
+    made = result.spline.made
+    method = "" if made is None else f"{made.space}, {made.operator}"
+    where = "where the bands are" if result.bands else "over the whole domain"
     print_pairs(
         shape=describe(shape),
         method=method,
         domain=box_text(result.spline.domain),
         tolerance=f"{result.tolerance:.4g}",
-        error=f"{result.error:.4g} (largest |s - u| found {where})",
+        error=f"{result.error:.4g} (largest |s - u| {where})",
+        bound="not asked for" if result.bound is None else f"{result.bound:.4g} (proved)",
         centre_error=f"{result.centre_error:.4g} (at cell centers only, as in the paper)",
         cells=f"{result.cells:,}",
         evaluations=f"{result.evaluations:,} exact distances",
@@ -58,16 +62,32 @@ def print_fit(result: FitResult, shape: Shape, method: str, seconds: float) -> N
     )
 
 
-def fit_figures(
-    result: FitResult, shape: Shape, *, space: str, operator: str, seconds: float
-) -> dict[str, Any]:
+def provenance(made: Provenance | None) -> dict[str, str]:
+    """What a saved fit says of how it was made."""
+    if made is None:
+        return {"made": "the file does not say how"}
+    bands = ", ".join(f"{low:.6g} to {high:.6g}" for low, high in made.bands)
+    return {
+        "method": f"{made.space}, {made.operator}",
+        "kept": f"at distances of {bands}" if bands else "over the whole domain",
+        "tolerance": f"{made.tolerance:.4g}",
+        "error": f"{made.error:.4g} (largest |s - u| found)",
+        "bound": "none was asked for" if made.bound is None else f"{made.bound:.4g} (proved)",
+        "stopped": made.stopped,
+        "evaluations": f"{made.evaluations:,} exact distances",
+        "made_by": f"splinesdf {made.version}",
+    }
+
+
+def fit_figures(result: FitResult, shape: Shape, *, seconds: float) -> dict[str, Any]:
     """The same and the history, for JSON."""
+    made = result.spline.made
     return {
         "shape": shape.name,
-        "space": space,
-        "operator": operator,
+        "space": made.space if made else None,
+        "operator": made.operator if made else None,
         "domain": list(result.spline.domain),
-        "band": list(result.band) if result.band else None,
+        "bands": [list(band) for band in result.bands],
         "tolerance": result.tolerance,
         "error": result.error,
         "centre_error": result.centre_error,

@@ -18,12 +18,17 @@ import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets
+from splinesdf.curves.bends import curvature_ranges, thickness
 from splinesdf.curves.hierarchy import build_hierarchy
 
 # An arclet's control points stay within this share of its chord's length from the chord (about
 # 45 degrees of turning). Smaller: more arclets, tighter capsules, fewer Newton steps, a deeper
 # tree. It is a matter of speed only: no guarantee depends on it.
 _BULGE = 0.1
+# Nor does an arclet bend so fast anywhere that it would turn by more than this (radians) on its
+# length: spikes and ends like cusps are cut off. Larger: curvature is known so badly beside them
+# that proofs of a fit's error take long; smaller: more arclets. Again a matter of speed only.
+_BENT = 2.0
 # Halvings after which a piece is taken as it is. Only pieces that shrink to a point (cusps, where
 # the chord vanishes as fast as the bulge) get there; the kernel is exact on them all the same.
 _HALVINGS = 12
@@ -177,7 +182,8 @@ def _cut(arcs: Arcs) -> Arcs:
     done = []
     for _ in range(_HALVINGS):
         size = np.ptp(arcs.control, axis=1).max(axis=1)
-        thick = (_bulge(arcs.control) > _BULGE) & (size > noise)
+        thick = (_bulge(arcs.control) > _BULGE) | (_most_bent(arcs.control) > _BENT)
+        thick &= size > noise
         done.append(_take(arcs, ~thick))
         arcs = split(_take(arcs, thick), 0.5)
         if len(arcs.control) == 0:
@@ -270,18 +276,15 @@ def _bulge(arcs: Floats) -> Floats:
     chord = arcs[:, -1] - arcs[:, 0]
     length = np.hypot(chord[:, 0], chord[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = _thickness(arcs) / length
+        ratio = thickness(arcs) / length
     return np.where(length > 0.0, ratio, np.inf)
 
 
-def _thickness(arcs: Floats) -> Floats:
-    """Largest distance of a control point from the chord's segment."""
+def _most_bent(arcs: Floats) -> Floats:
+    """The largest curvature times the length of the chord."""
+    low, high, _ = curvature_ranges(arcs)
     chord = arcs[:, -1] - arcs[:, 0]
-    squared = np.maximum(np.sum(chord * chord, axis=1), np.finfo(np.float64).tiny)
-    offset = arcs - arcs[:, :1]
-    share = np.sum(offset * chord[:, None], axis=2) / squared[:, None]
-    rest = offset - np.clip(share, 0.0, 1.0)[..., None] * chord[:, None]
-    return np.asarray(np.hypot(rest[..., 0], rest[..., 1]).max(axis=1))
+    return np.asarray(np.maximum(high, -low) * np.hypot(chord[:, 0], chord[:, 1]))
 
 
 def _tables(arcs: Floats, most: int) -> tuple[Floats, Floats, Floats, Floats]:
@@ -299,4 +302,4 @@ def _tables(arcs: Floats, most: int) -> tuple[Floats, Floats, Floats, Floats]:
             bernstein[:, :2, k] += weight * local[:, i]
             bernstein[:, 2, k] += weight * np.sum(local[:, i] * local[:, k - i], axis=1)
     boxes = np.concatenate([arcs.min(axis=1), arcs.max(axis=1)], axis=1)
-    return power, bernstein, boxes, _thickness(arcs)
+    return power, bernstein, boxes, thickness(arcs)

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Floats, Ints, as_points
-from splinesdf._tables import Arclets
+from splinesdf._tables import Arclets, Bends
 from splinesdf.curves.arclets import build_arclets
+from splinesdf.curves.bends import bends
 from splinesdf.curves.boundary import filled_boundary
 from splinesdf.curves.formula import parse_curve
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
@@ -287,6 +288,11 @@ class Shape:
         """
         largest = float(np.abs(self.control).max())
         return filled_boundary(self.arclets, self.fill == "evenodd", largest)
+
+    @cached_property
+    def bends(self) -> Bends:
+        """How the arcs of the boundary bend, made on first use."""
+        return bends(self.boundary)
 
     def piece(self, index: int) -> Floats:
         """Control points of one piece, shape (degree + 1, 2)."""

@@ -55,7 +55,8 @@ class Quadtree:
         Raises
         ------
         InputError
-            If there are too few or too many flags for the nodes that they make.
+            If there are too few or too many flags for the nodes that they make, or cells so small
+            that rounding makes them empty.
         """
         m, n = shape
         if m * n > len(split):
@@ -66,8 +67,10 @@ class Quadtree:
         while len(index):
             stop = start + len(index)
             here = split[start:stop]
-            if len(here) < len(index) or level > DEEPEST:
+            if len(here) < len(index):
                 raise InputError("expected a flag for every node of the quadtree, got too few")
+            if level > DEEPEST:
+                raise InputError(f"expected at most {DEEPEST} halvings of a quadtree, got more")
             child = np.full(len(index), -1)
             child[here] = stop + 4 * np.arange(np.count_nonzero(here))
             levels.append(np.full(len(index), level))
@@ -76,13 +79,21 @@ class Quadtree:
             index, start, level = _quarters(index[here]), stop, level + 1
         if start != len(split):
             raise InputError("expected a flag for every node of the quadtree, got too many")
-        return cls(
+        result = cls(
             tree.domain,
             tree.shape,
             np.concatenate(levels),
             np.concatenate(indices),
             np.concatenate(children),
         )
+        # Each side of a cell is rounded by up to one unit in the last place of the coordinates.
+        rounding = np.spacing(max(map(abs, tree.domain)))
+        if result.side(result.depth).min() < 4.0 * rounding:
+            raise InputError(
+                f"expected cells that rounding leaves open, got {result.depth} halvings of "
+                f"{m} x {n} cells of {tree.domain}"
+            )
+        return result
 
     @cached_property
     def leaves(self) -> Ints:
@@ -134,77 +145,8 @@ class Quadtree:
         locate_tree(domain, shape, self.child, self.cell_of, points, cells)
         return cells
 
-    def find(self, level: int, index: Ints) -> Ints:
-        """The node of each cell (n, 2) of a level, -1 where the tree has none."""
-        limits = np.array(self.shape) * 2**level
-        inside = np.all((index >= 0) & (index < limits), axis=1)
-        index = np.where(inside[:, None], index, 0)
-        top = index >> level
-        node = top[:, 0] * self.shape[1] + top[:, 1]
-        for k in range(level - 1, -1, -1):
-            bits = (index >> k) & 1
-            below = self.child[node]
-            node = np.where((below >= 0) & (node >= 0), below + 2 * bits[:, 0] + bits[:, 1], -1)
-        return np.where(inside, node, -1)
-
-    def outside(self, level: int, index: Ints) -> Bools:
-        """True for cells of a level that lie beyond the domain."""
-        limits = np.array(self.shape) * 2**level
-        return np.asarray(np.any((index < 0) | (index >= limits), axis=1))
-
-    def refine(self, cells: Bools) -> Quadtree:
-        """Halve the 3 x 3 block around every marked cell, so that new functions cover it whole.
-
-        A B-spline of the next level is used where its support lies in cells of that level: the
-        nine functions over the children of a cell reach one cell of this level further.
-        """
-        marked = self.leaves[cells]
-        around = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)])
-        wanted: list[Ints] = []
-        blocks: Ints = np.empty((0, 2), dtype=np.int64)
-        for level in range(self.depth, -1, -1):
-            here = self.index[marked[self.level[marked] == level]]
-            blocks = np.concatenate([blocks >> 1, (here[:, None] + around).reshape(-1, 2)])
-            blocks = blocks[~self.outside(level, blocks)]
-            blocks = np.unique(blocks, axis=0) if len(blocks) else blocks
-            wanted.append(blocks)
-        wanted.reverse()
-        levels, indices, children = [], [], []
-        index = self.index[self.level == 0]
-        total = 0
-        for level in range(self.depth + 2):
-            old = self.find(level, index) if level <= self.depth else np.full(len(index), -1)
-            split = np.where(old >= 0, self.child[old], -1) >= 0
-            if level < len(wanted) and len(wanted[level]):
-                split |= _contains(wanted[level], index)
-            total += len(index)
-            child = np.full(len(index), -1)
-            child[split] = total + 4 * np.arange(np.count_nonzero(split))
-            levels.append(np.full(len(index), level))
-            indices.append(index)
-            children.append(child)
-            if not split.any():
-                break
-            index = _quarters(index[split])
-        return Quadtree(
-            self.domain,
-            self.shape,
-            np.concatenate(levels),
-            np.concatenate(indices),
-            np.concatenate(children),
-        )
-
-
-def cell_keys(index: Ints) -> Ints:
-    """One sortable number for each cell (n, 2) of a level, one ring outside the domain included."""
-    return np.asarray((index[:, 0] + 1) * 2**31 + index[:, 1] + 1, dtype=np.int64)
-
 
 def _quarters(index: Ints) -> Ints:
     """The children of cells, one after the other: (n, 2) -> (4 n, 2)."""
     quarter = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
     return np.asarray((2 * index[:, None] + quarter).reshape(-1, 2))
-
-
-def _contains(cells: Ints, index: Ints) -> Bools:
-    return np.isin(cell_keys(index), cell_keys(cells))

@@ -20,13 +20,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
-from splinesdf.meshes.quadtree import Quadtree, cell_keys
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf._tables import Nodes
+from splinesdf.meshes.mesh import Box
+from splinesdf.meshes.quadtree import Quadtree
 
 # (level, cells (n, 2)) -> the functional of that level for these cells, (n,)
 Functional = Callable[[int, Ints], Floats]
 
-_AROUND = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)])
+_QUARTERS = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
+# The 2 x 2 cells around each corner SW SE NW NE of a cell, as changes of (level, i, j).
+_BESIDE = np.array(
+    [[(0, a * i, b * j) for i in (0, 1) for j in (0, 1)] for b in (-1, 1) for a in (-1, 1)]
+)
 
 
 def hierarchical_ordinates(mesh: Quadtree, functional: Functional) -> Floats:
@@ -43,58 +49,149 @@ def hierarchical_ordinates(mesh: Quadtree, functional: Functional) -> Floats:
     -------
     ndarray, shape (n_cells, 8)
     """
-    result = np.empty((len(mesh.leaves), 8))
-    coarse_keys, coarse = np.empty(0, dtype=np.int64), np.empty(0)
-    for level in range(mesh.depth + 1):
-        nodes = np.flatnonzero(mesh.level == level)
-        keys, cells = _with_ring(mesh.index[nodes])
-        values = np.empty(len(cells))
-        own = _support_refined(mesh, level, cells)
-        values[own] = functional(level, cells[own])
-        if not own.all():
-            values[~own] = _subdivide(cells[~own], coarse_keys, coarse)
-        leaves = nodes[mesh.child[nodes] < 0]
-        block = _look_up(keys, values, mesh.index[leaves])
-        result[mesh.cell_of[leaves]] = _cell_ordinates(block)
-        coarse_keys, coarse = keys, values
+    nodes = roots(mesh.shape)
+    numbers = _inside(mesh.shape)  # those of the mesh's nodes, level after level
+    level = 0
+    first = 0
+    while True:
+        here = mesh.child[first : first + len(numbers)] >= 0
+        if not here.any():
+            break
+        first += len(numbers)
+        split = np.zeros(len(nodes.level), dtype=np.bool_)
+        split[numbers[here]] = True
+        around = nodes.near[numbers[here]]
+        around = around[around >= 0]
+        split[around[outside(nodes)[around]]] = True
+        nodes = grown(nodes, split)
+        numbers = (nodes.child[numbers[here]][:, None] + np.arange(4)).reshape(-1)
+        level += 1
+    own = owned(nodes)
+    values = np.zeros(len(nodes.level))
+    for level in range(int(nodes.level.max()) + 1):
+        chosen = np.flatnonzero(own & (nodes.level == level))
+        values[chosen] = functional(level, nodes.place[chosen])
+    return ordinates(nodes, own, values, leaves(nodes))
+
+
+def roots(shape: tuple[int, int]) -> Nodes:
+    """The tree of m x n roots and the ring around them."""
+    m, n = shape
+    index = np.stack(np.meshgrid(np.arange(-1, m + 1), np.arange(-1, n + 1), indexing="ij"), -1)
+    count = (m + 2) * (n + 2)
+    level, child = np.zeros(count, dtype=np.int64), np.full(count, -1)
+    return _linked(np.array([m, n]), level, index.reshape(-1, 2), child)
+
+
+def _inside(shape: tuple[int, int]) -> Ints:
+    """The roots in the domain."""
+    m, n = shape
+    return np.arange((m + 2) * (n + 2)).reshape(m + 2, n + 2)[1:-1, 1:-1].reshape(-1)
+
+
+def grown(nodes: Nodes, split: Bools) -> Nodes:
+    """The tree with four children below each node that is to be split; old nodes keep their number.
+
+    Nodes of the ring beside it must be split with it.
+    """
+    chosen = np.flatnonzero(split & (nodes.child < 0))
+    child = np.concatenate([nodes.child, np.full(4 * len(chosen), -1)])
+    child[chosen] = len(nodes.child) + 4 * np.arange(len(chosen))
+    index = (2 * nodes.place[chosen][:, None] + _QUARTERS).reshape(-1, 2)
+    level = np.repeat(nodes.level[chosen] + 1, 4)
+    return _linked(
+        nodes.shape,
+        np.concatenate([nodes.level, level]),
+        np.concatenate([nodes.place, index]),
+        child,
+    )
+
+
+def refined(nodes: Nodes, bad: Ints, quarters: Bools) -> Nodes:
+    """The tree in which new functions reach the marked quarters (k, 4) of some leaves (k,).
+
+    A B-spline of the next level is used where its support lies in cells of that level. That of a
+    child of a cell reaches into the cells beside that quarter: the 2 x 2 cells around the corner
+    at which the quarter lies (SW SE NW NE) are split.
+    """
+    from splinesdf.kernels.hierarchy import mark  # Numba loads only when it is used
+
+    cell, quarter = np.nonzero(quarters)
+    cells = np.column_stack([nodes.level[bad], nodes.place[bad]])[cell]
+    targets = np.ascontiguousarray((cells[:, None] + _BESIDE[quarter]).reshape(-1, 3))
+    again = True
+    while again:
+        split = np.zeros(len(nodes.level), dtype=np.bool_)
+        again = mark(nodes, targets, split)
+        nodes = grown(nodes, split)
+    return nodes
+
+
+def _linked(shape: Ints, level: Ints, index: Ints, child: Ints) -> Nodes:
+    from splinesdf.kernels.hierarchy import link
+
+    near = np.empty((len(level), 9), dtype=np.int64)
+    nodes = Nodes(shape, level, np.ascontiguousarray(index), child, near)
+    link(nodes, _coarse_first(nodes), near)
+    return nodes
+
+
+def _coarse_first(nodes: Nodes) -> Ints:
+    return np.argsort(nodes.level.astype(np.uint8), kind="stable")
+
+
+def outside(nodes: Nodes) -> Bools:
+    """Which nodes are of the ring around the domain."""
+    limit = nodes.shape << nodes.level[:, None]
+    return np.asarray(np.any((nodes.place < 0) | (nodes.place >= limit), axis=1))
+
+
+def owned(nodes: Nodes) -> Bools:
+    """Which nodes have a coefficient of their own."""
+    from splinesdf.kernels.hierarchy import owned as fill
+
+    own = np.empty(len(nodes.level), dtype=np.bool_)
+    fill(nodes, own)
+    return own
+
+
+def leaves(nodes: Nodes) -> Ints:
+    """The nodes that are cells, in the order of `quadtree`."""
+    return _mesh_order(nodes)[1]
+
+
+def ordinates(nodes: Nodes, own: Bools, values: Floats, cells: Ints) -> Floats:
+    """Ordinates (k, 8) of cells from the own coefficients of nodes."""
+    from splinesdf.kernels.hierarchy import coefficients, ordinates
+
+    every = np.empty(len(values))
+    coefficients(nodes, _coarse_first(nodes), own, values, every)
+    result = np.empty((len(cells), 8))
+    ordinates(nodes, cells, every, result)
     return result
 
 
-def _with_ring(cells: Ints) -> tuple[Ints, Ints]:
-    """The cells and all their neighbors, sorted by key, each once."""
-    every = (cells[:, None] + _AROUND).reshape(-1, 2)
-    keys, first = np.unique(cell_keys(every), return_index=True)
-    return keys, every[first]
+def quadtree(nodes: Nodes, domain: Box) -> Quadtree:
+    """The tree without its ring, as a mesh."""
+    order, _ = _mesh_order(nodes)
+    child = np.full(len(order), -1)
+    split = nodes.child[order] >= 0
+    m, n = (int(count) for count in nodes.shape)
+    child[split] = m * n + 4 * np.arange(np.count_nonzero(split))
+    return Quadtree(domain, (m, n), nodes.level[order], nodes.place[order], child)
 
 
-def _support_refined(mesh: Quadtree, level: int, cells: Ints) -> np.ndarray:
-    """Whether the 3 x 3 cells around each cell all exist at this level, inside the domain."""
-    result = np.ones(len(cells), dtype=bool)
-    for shift in _AROUND:
-        neighbor = cells + shift
-        result &= (mesh.find(level, neighbor) >= 0) | mesh.outside(level, neighbor)
-    return result
-
-
-def _subdivide(cells: Ints, coarse_keys: Ints, coarse: Floats) -> Floats:
-    parent = cells >> 1
-    toward = 2 * (cells & 1) - 1
-    beside_x = parent + toward * np.array([1, 0])
-    beside_y = parent + toward * np.array([0, 1])
-    at = [np.searchsorted(coarse_keys, cell_keys(p)) for p in (parent, beside_x, beside_y)]
-    return 0.5 * coarse[at[0]] + 0.25 * (coarse[at[1]] + coarse[at[2]])
-
-
-def _look_up(keys: Ints, values: Floats, cells: Ints) -> Floats:
-    """Coefficients of the 3 x 3 block around each cell, shape (n, 3, 3)."""
-    every = (cells[:, None] + _AROUND).reshape(-1, 2)
-    return values[np.searchsorted(keys, cell_keys(every))].reshape(-1, 3, 3)
-
-
-def _cell_ordinates(c: Floats) -> Floats:
-    """Eight ordinates of uniform cells from the 3 x 3 coefficients around each."""
-    low, high = slice(0, 2), slice(1, 3)
-    corners = [c[:, a, b].mean(axis=(1, 2)) for b in (low, high) for a in (low, high)]
-    middle = c[:, 1, 1]
-    sides = [0.5 * (middle + other) for other in (c[:, 1, 0], c[:, 2, 1], c[:, 1, 2], c[:, 0, 1])]
-    return np.stack(corners + sides, axis=1)
+def _mesh_order(nodes: Nodes) -> tuple[Ints, Ints]:
+    """The nodes in the domain, level after level, each with its children in order; the leaves."""
+    m, n = (int(count) for count in nodes.shape)
+    here = _inside((m, n))
+    levels = [here]
+    while True:
+        child = nodes.child[here]
+        child = child[child >= 0]
+        if len(child) == 0:
+            break
+        here = (child[:, None] + np.arange(4)).reshape(-1)
+        levels.append(here)
+    order = np.concatenate(levels)
+    return order, order[nodes.child[order] < 0]

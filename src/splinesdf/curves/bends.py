@@ -1,0 +1,196 @@
+"""How much arclets bend: proved ranges of curvature, for bounds of a distance's derivatives.
+
+With u the signed distance to a smooth arc, negative on its left, s its arc length and kappa its
+curvature, u has the second derivative k = kappa / (1 + kappa u) along its level sets, none across
+them, and k changes along a level set by (d kappa / ds) / (1 + kappa u)^3: ranges of kappa and of
+d kappa / ds are all that bounds of a distance's derivatives need.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from splinesdf._arrays import Floats, Ints
+from splinesdf._tables import Arclets, Bends
+from splinesdf.curves.geometry import end_tangents
+
+# Equal parts of an arclet that are bounded one by one. More: closer ranges where the parameter's
+# speed varies; each costs once, when the shape is first fitted.
+_PARTS = 4
+# Bounds are widened by this share of the largest terms that went into them, against rounding.
+_SLACK = 1e-12
+
+
+def bends(arclets: Arclets) -> Bends:
+    """Ranges of curvature and unit tangents of all arclets."""
+    degree = arclets.arcs[:, 0].astype(np.int64)
+    count = len(degree)
+    curvature = np.zeros((count, 5))
+    for d in np.unique(degree):
+        rows = np.flatnonzero(degree == d)
+        if d > 1:
+            curvature[rows] = _curvatures(arclets.power[rows, 1 : d + 1])
+    leaving, arriving = (
+        vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+        for vectors in end_tangents(arclets)
+    )
+    previous = np.full(count, -1)
+    linked = np.flatnonzero(arclets.following >= 0)
+    previous[arclets.following[linked]] = linked
+    rows = np.concatenate([curvature, leaving, arriving, _extents(arclets, degree)], axis=1)
+    return Bends(np.ascontiguousarray(rows), _second_differences(arclets, degree), previous)
+
+
+def _second_differences(arclets: Arclets, degree: Ints) -> Floats:
+    """See `Bends`."""
+    result = np.zeros((len(degree), 5, max(2 * int(degree.max()) - 1, 1)))
+    result[:, 0] = np.inf
+    for d in np.unique(degree[degree > 1]):
+        rows = np.flatnonzero(degree == d)
+        m = 2 * d + 1
+        table = arclets.arcs[rows, 5 + 2 * d : 5 + 2 * d + 3 * m].reshape(len(rows), 3, m)
+        x, y, squares = np.moveaxis(np.diff(table, n=2, axis=2), 1, 0)
+        result[rows, :4, : m - 2] = np.stack([squares, x, y, np.abs(x) + np.abs(y)], axis=1)
+        result[rows, 4] = table[:, 2, -1:]
+    return result
+
+
+def _extents(arclets: Arclets, degree: Ints) -> Floats:
+    """The largest speed on each arclet (none is longer), and how far it bulges, (n, 2)."""
+    result = np.empty((len(degree), 2))
+    # Rounding in points of the curve.
+    grain = 16.0 * np.finfo(np.float64).eps * float(np.abs(arclets.boxes[0]).max())
+    for d in np.unique(degree):
+        rows = np.flatnonzero(degree == d)
+        control = _control(arclets.power[rows, 1 : d + 1])
+        steps = d * np.diff(control, axis=1)
+        result[rows, 0] = np.hypot(steps[..., 0], steps[..., 1]).max(axis=1) * (1.0 + _SLACK)
+        result[rows, 1] = thickness(control) * (1.0 + _SLACK) + grain
+    return result
+
+
+def _control(power: Floats) -> Floats:
+    """Control points of arcs that start at 0: (n, d, 2), from t on, -> (n, d + 1, 2)."""
+    count, d = power.shape[:2]
+    control = np.zeros((count, d + 1, 2))
+    for k in range(d + 1):
+        for j in range(1, k + 1):
+            control[:, k] += math.comb(k, j) / math.comb(d, j) * power[:, j - 1]
+    return control
+
+
+def _curvatures(power: Floats) -> Floats:
+    """Smallest and largest curvature, largest |d kappa / ds|, curvature at both ends, (n, 5).
+
+    Parameters
+    ----------
+    power : ndarray, shape (n, d, 2)
+        Power basis from t on. Infinite ranges where the speed may vanish.
+    """
+    count, d = power.shape[:2]
+    control = _control(power)
+    result = np.empty((count, 5))
+    low, high, slope = np.full(count, np.inf), np.full(count, -np.inf), np.zeros(count)
+    for part in range(_PARTS):
+        piece = _restricted(control, part / _PARTS, (part + 1) / _PARTS)
+        part_low, part_high, part_slope = curvature_ranges(piece)
+        low, high = np.minimum(low, part_low), np.maximum(high, part_high)
+        slope = np.maximum(slope, part_slope)
+    result[:, 0], result[:, 1], result[:, 2] = low, high, slope
+    for column, ends in ((3, control), (4, control[:, ::-1])):
+        first = d * (ends[:, 1] - ends[:, 0])
+        second = d * (d - 1) * (ends[:, 2] - 2.0 * ends[:, 1] + ends[:, 0])
+        cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            value = cross / np.hypot(first[:, 0], first[:, 1]) ** 3
+        # Backwards the curve bends to the other side.
+        result[:, column] = value if column == 3 else -value
+    unknown = ~np.isfinite(result).all(axis=1)
+    result[unknown] = (-np.inf, np.inf, np.inf, np.inf, np.inf)
+    return result
+
+
+def curvature_ranges(control: Floats) -> tuple[Floats, Floats, Floats]:
+    """Least and largest curvature and largest change of it with arc length, as far as is proved.
+
+    Parameters
+    ----------
+    control : ndarray, shape (n, d + 1, 2)
+        Bézier arcs. Where the speed may vanish the ranges are infinite.
+
+    Returns
+    -------
+    low, high, change : ndarray, shape (n,)
+    """
+    first = _derivative(control)
+    second = _derivative(first)
+    third = _derivative(second)
+    cross = _product(first[..., 0], second[..., 1]) - _product(first[..., 1], second[..., 0])
+    noise = _SLACK * np.abs(first).max(axis=(1, 2)) * np.abs(second).max(axis=(1, 2))
+    cross_low, cross_high = cross.min(axis=1) - noise, cross.max(axis=1) + noise
+    squared = _product(first[..., 0], first[..., 0]) + _product(first[..., 1], first[..., 1])
+    speed_low = squared.min(axis=1) - _SLACK * squared.max(axis=1)
+    speed_high = squared.max(axis=1) * (1.0 + _SLACK)
+    cross_third = _product(first[..., 0], third[..., 1]) - _product(first[..., 1], third[..., 0])
+    along = _product(first[..., 0], second[..., 0]) + _product(first[..., 1], second[..., 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slowest = np.where(speed_low > 0.0, speed_low, 0.0) ** 1.5
+        fastest = speed_high**1.5
+        low = cross_low / np.where(cross_low < 0.0, slowest, fastest)
+        high = cross_high / np.where(cross_high > 0.0, slowest, fastest)
+        # d kappa / dt = (c' x c''') / |c'|^3 - 3 (c' x c'') (c' . c'') / |c'|^5
+        change = np.abs(cross_third).max(axis=1) * (1.0 + _SLACK) / slowest
+        both = np.maximum(np.abs(cross_low), np.abs(cross_high)) * np.abs(along).max(axis=1)
+        change += 3.0 * (1.0 + _SLACK) * both / (slowest * speed_low)
+        change /= np.sqrt(np.where(speed_low > 0.0, speed_low, 0.0))
+    standing = speed_low <= 0.0
+    return (
+        np.where(standing, -np.inf, low),
+        np.where(standing, np.inf, high),
+        np.where(standing, np.inf, change),
+    )
+
+
+def _derivative(control: Floats) -> Floats:
+    degree = control.shape[1] - 1
+    if degree == 0:
+        return np.zeros_like(control)
+    return np.asarray(degree * np.diff(control, axis=1))
+
+
+def _product(one: Floats, other: Floats) -> Floats:
+    """Bernstein coefficients (n, a + b + 1) of products of polynomials (n, a + 1), (n, b + 1)."""
+    a, b = one.shape[1] - 1, other.shape[1] - 1
+    result = np.zeros((len(one), a + b + 1))
+    for i in range(a + 1):
+        for j in range(b + 1):
+            weight = math.comb(a, i) * math.comb(b, j) / math.comb(a + b, i + j)
+            result[:, i + j] += weight * one[:, i] * other[:, j]
+    return result
+
+
+def _restricted(control: Floats, low: float, high: float) -> Floats:
+    """Control points of the part of arcs between two parameters, by de Casteljau."""
+    return _head(_head(control, high)[:, ::-1], 1.0 - low / high)[:, ::-1]
+
+
+def _head(control: Floats, at: float) -> Floats:
+    """Control points of the part of arcs from 0 to a parameter."""
+    result = np.empty_like(control)
+    points = control
+    for k in range(control.shape[1]):
+        result[:, k] = points[:, 0]
+        points = (1.0 - at) * points[:, :-1] + at * points[:, 1:]
+    return result
+
+
+def thickness(arcs: Floats) -> Floats:
+    """Largest distance of a control point from the chord's segment."""
+    chord = arcs[:, -1] - arcs[:, 0]
+    squared = np.maximum(np.sum(chord * chord, axis=1), np.finfo(np.float64).tiny)
+    offset = arcs - arcs[:, :1]
+    share = np.sum(offset * chord[:, None], axis=2) / squared[:, None]
+    rest = offset - np.clip(share, 0.0, 1.0)[..., None] * chord[:, None]
+    return np.asarray(np.hypot(rest[..., 0], rest[..., 1]).max(axis=1))

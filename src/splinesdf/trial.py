@@ -1,0 +1,237 @@
+"""Trials of a fit: a mesh that can be refined, and the quasi-interpolant of a shape on it.
+
+Both kinds answer the same: which cells there are, the spline, the exact distance at the centers of
+cells, which cells have changed since they were last measured, and what is known of their errors.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.curves.shape import Shape
+from splinesdf.distance import signed_distance
+from splinesdf.meshes import Box, Grid
+from splinesdf.quasi import STENCILS, quasi_interpolate
+from splinesdf.spaces.hierarchical import (
+    leaves,
+    ordinates,
+    owned,
+    quadtree,
+    refined,
+    roots,
+)
+from splinesdf.spline import SplineSDF
+
+
+class Known(NamedTuple):
+    """What is known of the largest |s - u| in each of some cells."""
+
+    low: Floats  # (n,) it is at least this, up to rounding
+    high: Floats  # (n,) and at most this
+    counts: Bools  # (n,) whether the cell meets a band; all do if there is none
+    over: Bools  # (n, 4) in which quarters (SW SE NW NE) it is not known to be small enough
+
+
+def _nothing_known(count: int) -> Known:
+    return Known(
+        np.zeros(count),
+        np.full(count, np.inf),
+        np.ones(count, dtype=np.bool_),
+        np.ones((count, 4), dtype=np.bool_),
+    )
+
+
+class Trial(Protocol):
+    """What the loop of a fit asks."""
+
+    evaluations: int
+    spline: SplineSDF
+    changed: Ints
+
+    @property
+    def center(self) -> Floats:
+        """Exact distances at the centers of all cells."""
+
+    @property
+    def known(self) -> Known:
+        """What is known of the errors in all cells."""
+
+    def learn(self, cells: Ints, errors: Known) -> None:
+        """Remember what was found out about some cells."""
+
+    def refine(self, bad: Ints) -> None:
+        """Halve cells, and what else must be so that they get better."""
+
+
+class GridTrial:
+    """On a tensor grid; whatever is refined, all cells change."""
+
+    def __init__(self, shape: Shape, mesh: Grid, operator: str, whole: bool) -> None:
+        self._shape, self._operator, self._whole = shape, operator, whole
+        self.evaluations = 0
+        self._interpolate(mesh)
+
+    @property
+    def center(self) -> Floats:
+        """Exact distances at the centers of all cells."""
+        return self._center
+
+    @property
+    def known(self) -> Known:
+        """What is known of the errors in all cells."""
+        return self._known
+
+    def learn(self, cells: Ints, errors: Known) -> None:
+        """Remember what was found out about some cells."""
+        for mine, theirs in zip(self._known, errors, strict=True):
+            mine[cells] = theirs
+
+    def refine(self, bad: Ints) -> None:
+        """Halve every row and column with a bad cell, or all."""
+        mesh = self._mesh
+        if self._whole:
+            mesh = mesh.halve()
+        else:
+            marked = np.zeros(len(mesh.boxes), dtype=np.bool_)
+            marked[bad] = True
+            marked = marked.reshape(mesh.shape)
+            mesh = mesh.insert(np.any(marked, axis=1), np.any(marked, axis=0))
+        self._interpolate(mesh)
+
+    def _interpolate(self, mesh: Grid) -> None:
+        self._mesh = mesh
+        shape = self._shape
+        found = quasi_interpolate(self._distance, mesh, self._operator)
+        self.spline = SplineSDF(mesh, found.ordinates, shape=shape)
+        count = len(mesh.boxes)
+        self._center = self._distance(0.5 * (mesh.boxes[:, :2] + mesh.boxes[:, 2:]))
+        self.changed = np.arange(count)
+        self._known = _nothing_known(count)
+
+    def _distance(self, points: Floats) -> Floats:
+        self.evaluations += len(points)
+        return signed_distance(self._shape, points)
+
+
+class TreeTrial:
+    """On a quadtree. No distance is asked twice: a node keeps those at its center and corner.
+
+    A corner that several nodes share belongs to the one right of and above it. Of four children
+    one has its parent's corner and one its center there, so that a node costs 1.5 distances.
+    """
+
+    def __init__(self, shape: Shape, domain: Box, start: tuple[int, int], operator: str) -> None:
+        self._shape, self._domain, self._stencil = shape, domain, STENCILS[operator]
+        self._parity = operator == "P"
+        self._side = np.array(
+            [(domain[2] - domain[0]) / start[0], (domain[3] - domain[1]) / start[1]]
+        )
+        self.evaluations = 0
+        nodes = roots(start)
+        every = np.arange(len(nodes.level))
+        self._nodes = nodes
+        self._centers = self._ask(nodes.level, nodes.place + 0.5)
+        self._corners = self._ask(nodes.level, nodes.place)
+        self._values = np.full(len(every), np.nan)
+        self._ordinates = np.full((len(every), 8), np.nan)
+        self._known = _nothing_known(len(every))
+        self._interpolate()
+
+    @property
+    def center(self) -> Floats:
+        """Exact distances at the centers of all cells."""
+        return self._centers[self._cells]
+
+    @property
+    def known(self) -> Known:
+        """What is known of the errors in all cells."""
+        low, high, counts, over = self._known
+        cells = self._cells
+        return Known(low[cells], high[cells], counts[cells], over[cells])
+
+    def learn(self, cells: Ints, errors: Known) -> None:
+        """Remember what was found out about some cells."""
+        for mine, theirs in zip(self._known, errors, strict=True):
+            mine[self._cells[cells]] = theirs
+
+    def refine(self, bad: Ints) -> None:
+        """Halve the 3 x 3 cells around each bad cell."""
+        before = len(self._nodes.level)
+        self._nodes = nodes = refined(self._nodes, self._cells[bad], self.known.over[bad])
+        count = len(nodes.level) - before
+        self._values = np.concatenate([self._values, np.full(count, np.nan)])
+        self._ordinates = np.concatenate([self._ordinates, np.full((count, 8), np.nan)])
+        old, new = self._known, _nothing_known(count)
+        self._known = Known(
+            np.concatenate([old.low, new.low]),
+            np.concatenate([old.high, new.high]),
+            np.concatenate([old.counts, new.counts]),
+            np.concatenate([old.over, new.over]),
+        )
+        self._sample(before)
+        self._interpolate()
+
+    def _sample(self, before: int) -> None:
+        """Distances at centers and corners of the nodes from a number on."""
+        nodes = self._nodes
+        every = np.arange(before, len(nodes.level))
+        centers = self._ask(nodes.level[every], nodes.place[every] + 0.5)
+        self._centers = np.concatenate([self._centers, centers])
+        parents = np.empty(len(every), dtype=np.int64)
+        split = np.flatnonzero(nodes.child >= before)
+        for k in range(4):
+            parents[nodes.child[split] + k - before] = split
+        quarter = (nodes.place[every] & 1).sum(axis=1)
+        corners = np.empty(len(every))
+        new = every[quarter == 1]
+        corners[new - before] = self._ask(nodes.level[new], nodes.place[new])
+        corners[quarter == 2] = self._centers[parents[quarter == 2]]
+        self._corners = np.concatenate([self._corners, corners])
+        # Coarse ones first, as a parent may itself be new.
+        for level in np.unique(nodes.level[every]):
+            same = (quarter == 0) & (nodes.level[every] == level)
+            self._corners[every[same]] = self._corners[parents[same]]
+
+    def _interpolate(self) -> None:
+        nodes = self._nodes
+        own = owned(nodes)
+        fresh = np.flatnonzero(own & np.isnan(self._values))
+        self._values[fresh] = self._functional(fresh)
+        self._cells = leaves(nodes)
+        found = ordinates(nodes, own, self._values, self._cells)
+        self.changed = np.flatnonzero(np.any(found != self._ordinates[self._cells], axis=1))
+        self._ordinates[self._cells] = found
+        mesh = quadtree(nodes, self._domain)
+        self.spline = SplineSDF(mesh, found, shape=self._shape)
+
+    def _functional(self, chosen: Ints) -> Floats:
+        """The quasi-interpolant's functional of nodes."""
+        nodes = self._nodes
+        offsets, weights = self._stencil
+        turned = np.ones(len(chosen), dtype=np.int64)
+        if self._parity:
+            turned -= 2 * (nodes.place[chosen].sum(axis=1) & 1)
+        result = np.zeros(len(chosen))
+        for (x, y), weight in zip(offsets, weights, strict=True):
+            # The cell in whose center, or lower left corner, the sample lies.
+            corner = x % 1.0 != 0.0
+            shift = np.column_stack([turned * int(x), np.full(len(chosen), int(y))])
+            if corner:
+                shift = np.full((len(chosen), 2), (int(x + 0.5), int(y + 0.5)))
+            other = nodes.near[chosen, 4 + 3 * shift[:, 0] + shift[:, 1]]
+            values = (self._corners if corner else self._centers)[np.maximum(other, 0)]
+            far = np.flatnonzero(other < 0)  # beyond the ring around the domain
+            place = nodes.place[chosen[far]] + shift[far] + (0.0 if corner else 0.5)
+            values[far] = self._ask(nodes.level[chosen[far]], place)
+            result += weight * values
+        return result
+
+    def _ask(self, level: Ints, place: NDArray[Any]) -> Floats:
+        """Exact distances at places (n, 2) in cells of a level from the domain's corner."""
+        self.evaluations += len(level)
+        side = self._side * np.exp2(-level.astype(np.float64))[:, None]
+        return signed_distance(self._shape, np.array(self._domain[:2]) + place * side)
