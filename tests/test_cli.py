@@ -84,7 +84,7 @@ def test_tolerance_that_was_not_given_is_announced(run: Command) -> None:
 def test_band_reaches_the_fit(run: Command) -> None:
     done = run("fit", "gamma2", "--tolerance", "1e-4", "--band", "-0.02", "-0.01", "--json")
     found = json.loads(done.out)
-    assert found["band"] == [-0.02, -0.01]
+    assert found["bands"] == [[-0.02, -0.01]]
     assert found["error"] <= 1e-4
     assert found["cells"] < 1000
 

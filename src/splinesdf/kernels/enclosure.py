@@ -153,10 +153,13 @@ def _enclose_one(
                 triangle, c, px, py, sign, chains, models, enough, spare, grain
             )
             lo, hi, found = max(lo, lower), min(hi, upper), max(found, seen)
-        if asked.bands.shape[0] > 0 and sizes[size, 1] >= 0:
-            # Where the side or the distance is not certain, all that they may be.
-            high_u = nearest + r + grain if sign >= 0 or not exact else r + grain - nearest
-            low_u = nearest - r - grain if sign > 0 and exact else -nearest - r - grain
+        if asked.bands.shape[0] > 0:
+            # All that the distance may be on the triangle, as it is 1-Lipschitz.
+            reach = math.sqrt((px - anchor_x) ** 2 + (py - anchor_y) ** 2) + r + grain
+            low_u, high_u = anchored - reach, anchored + reach
+            if exact and sign != 0:
+                low_u = max(low_u, sign * nearest - r - grain)
+                high_u = min(high_u, sign * nearest + r + grain)
             if _out_of_bands(asked.bands, low_u, high_u, c):
                 continue
         low = max(low, found)

@@ -1,0 +1,348 @@
+"""Fits: leaves, errors, proofs, times; beside the paper's method, other operators, random points.
+
+Run from the repository's root, with the ``test`` extra and fontTools installed:
+
+    python -m benchmarks.fits [--tables ABCDE] [--points 1000000] [--shapes 12]
+
+The paper's curves are fitted on its unit square with absolute tolerances; for other shapes all
+lengths are shares of the shape's size, and the domain is the default one.
+
+A  leaves, error, proved bound, evaluations and seconds, with and without the proof
+B  the paper's grids at the same true error: tensor grids and uniform ones, operator W
+C  how leaves grow with the tolerance: exponents by least squares
+D  random points against error and bound
+E  operators, and grids to start from
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import statistics
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+import splinesdf as ss
+from splinesdf import paper
+from splinesdf.errors import ToleranceNotReached
+from splinesdf.fit import FitResult, fit_steps
+from splinesdf.meshes import Box
+from tests.glyphs import glyphs
+from tests.real_shapes import SMOOTH, formula_shape, icons, outlines
+
+ROUNDS = 5
+SLOW = 2.0  # seconds; what takes longer is timed once
+MOST = 300_000  # cells beyond which the paper's method gives up
+BLOCK = 1_000_000  # random points at a time
+OPERATORS = "SWPV"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A shape, where it is fitted, and the length that tolerances are shares of."""
+
+    name: str
+    shape: ss.Shape
+    domain: Box | None
+    unit: float
+
+    def fit(self, share: float, *, level: float | None = None, **options: Any) -> FitResult:
+        """A fit, over the whole domain or of one level, both given as shares; errors too."""
+        band = None if level is None else (level * self.unit, level * self.unit)
+        return ss.fit(
+            self.shape, tolerance=share * self.unit, domain=self.domain, band=band, **options
+        )
+
+    def start(self, cells: int, level: float | None = None) -> tuple[int, int]:
+        """So many cells along the longer side of the domain."""
+        box = self.domain or self.shape.default_domain(max(0.0, (level or 0.0) * self.unit))
+        width, height = box[2] - box[0], box[3] - box[1]
+        side = max(width, height) / cells
+        return max(1, round(width / side)), max(1, round(height / side))
+
+
+def curve(name: str) -> Case:
+    return Case(name, paper.shape(name), paper.DOMAIN, 1.0)
+
+
+def drawn(shape: ss.Shape, name: str | None = None) -> Case:
+    return Case(name or shape.name, shape, None, shape.size)
+
+
+def glyph(character: str) -> Case:
+    return drawn(glyphs()[f"DejaVuSans:{character}"], f"glyph {character}")
+
+
+def icon(name: str) -> Case:
+    return drawn(icons()[name], name)
+
+
+def part() -> Case:
+    with resources.as_file(resources.files("splinesdf") / "data" / "part.svg") as path:
+        return drawn(ss.read(path), "part.svg")
+
+
+def head(title: str, columns: str) -> None:
+    print(f"\n{title}\n{columns}", flush=True)
+
+
+def seconds(runs: Sequence[Callable[[], object]]) -> tuple[list[float], int]:
+    """Medians of the times of runs that take turns, and how many there were."""
+    times: list[list[float]] = [[] for _ in runs]
+    count = 0
+    while count == 0 or (count < ROUNDS and max(map(max, times)) < SLOW):
+        for run, mine in zip(runs, times, strict=True):
+            began = time.perf_counter()
+            run()
+            mine.append(time.perf_counter() - began)
+        count += 1
+    return [statistics.median(mine) for mine in times], count
+
+
+def table_a() -> None:
+    head(
+        "A. leaves, errors, times (medians of warm runs)",
+        f"{'shape':12} tolerance     error     bound   ratio   leaves  evaluations  per leaf"
+        "  seconds  unproved  ratio  runs  leaves unproved",
+    )
+    cases = [(curve(name), (1e-2, 2e-3, 1e-3, 3e-4, 1e-4)) for name in paper.CURVES]
+    others = [
+        *map(glyph, "gS&"),
+        *map(icon, ("airplane", "github", "fingerprint")),
+        drawn(outlines()["iceland"], "iceland"),
+        part(),
+    ]
+    cases += [(case, (1e-2, 1e-3)) for case in others]
+    for case, shares in cases:
+        for share in shares:
+            result = case.fit(share)  # also warms up
+            unproved = case.fit(share, certify=False)
+            runs = [partial(case.fit, share), partial(case.fit, share, certify=False)]
+            (proved, believed), count = seconds(runs)
+            error, bound = result.error / case.unit, (result.bound or math.nan) / case.unit
+            print(
+                f"{case.name:12} {share:9.0e} {error:9.3e} {bound:9.3e} {bound / error:7.4f} "
+                f"{result.cells:8} {result.evaluations:12} "
+                f"{result.evaluations / result.cells:9.2f} {proved:8.3f} {believed:9.3f} "
+                f"{proved / believed:6.2f} {count:5} {unproved.cells:8}",
+                flush=True,
+            )
+
+
+def given_up(case: Case, share: float, **options: Any) -> FitResult:
+    """A fit, or what there was when it had more than `MOST` cells."""
+    try:
+        return case.fit(share, max_cells=MOST, **options)
+    except ToleranceNotReached as stopped:
+        return stopped.result
+
+
+def uniform(case: Case, share: float) -> FitResult:
+    """The coarsest uniform square grid that keeps the tolerance, by bisection, or the last."""
+
+    def at(n: int) -> FitResult:
+        options: dict[str, Any] = {"space": "uniform", "operator": "W", "domain": case.domain}
+        return next(fit_steps(case.shape, tolerance=share, start=(n, n), **options))
+
+    n = 4
+    while (found := at(n)).stopped != "reached":
+        if n * n > MOST:
+            return found
+        n *= 2
+    low, high = n // 2, n
+    while high - low > 1:
+        middle = (low + high) // 2
+        tried = at(middle)
+        if tried.stopped == "reached":
+            high, found = middle, tried
+        else:
+            low = middle
+    return found
+
+
+def table_b() -> None:
+    head(
+        f"B. the paper's grids at the same true error (given up beyond {MOST:,} cells)",
+        "curve    tolerance  method            cells     error    ratio  seconds",
+    )
+    methods: dict[str, Callable[[Case, float], FitResult]] = {
+        "hierarchical S": lambda case, share: case.fit(share),
+        "hierarchical W": lambda case, share: case.fit(share, operator="W"),
+        "tensor W": partial(given_up, space="tensor", operator="W"),
+        "uniform W": uniform,
+    }
+    for name in ("gamma1", "gamma2"):
+        case = curve(name)
+        for share in (1e-2, 5e-3, 2e-3, 1e-3):
+            leaves = case.fit(share).cells
+            for method, run in methods.items():
+                began = time.perf_counter()
+                result = run(case, share)
+                took = time.perf_counter() - began
+                missed = "" if result.stopped == "reached" else "  gave up"
+                print(
+                    f"{name:8} {share:9.0e}  {method:14} {result.cells:8} {result.error:9.2e} "
+                    f"{result.cells / leaves:8.2f} {took:8.2f}{missed}",
+                    flush=True,
+                )
+
+
+def table_c() -> None:
+    head(
+        "C. exponents of leaves against tolerance (least squares)",
+        "shape    where          operator  exponent  expected  last half  leaves",
+    )
+    coarse = [10.0 ** (-2.0 - k / 3.0) for k in range(7)]
+    fine = [10.0 ** (-3.0 - k / 2.0) for k in range(9)]
+    for case in (curve("gamma2"), curve("gamma3"), glyph("g")):
+        for operator in "SP":
+            counts = [case.fit(share, operator=operator).cells for share in coarse]
+            show_slope(case.name, "everywhere", operator, -1.0, coarse, counts)
+    for case, level in ((curve("gamma2"), -0.02), (curve("gamma1"), 0.05)):
+        for operator in "SP":
+            counts = [
+                cells_on(case.shape, case.fit(share, level=level, operator=operator), level)
+                for share in fine
+            ]
+            show_slope(case.name, f"level {level:+.2f}", operator, -1.0 / 3.0, fine, counts)
+
+
+def cells_on(shape: ss.Shape, result: FitResult, level: float) -> int:
+    """Leaves that a level may meet: its distance from their center is half a diagonal at most."""
+    boxes = result.spline.mesh.boxes
+    away = np.abs(ss.signed_distance(shape, 0.5 * (boxes[:, :2] + boxes[:, 2:])) - level)
+    return int(np.count_nonzero(away <= 0.5 * np.hypot(*(boxes[:, 2:] - boxes[:, :2]).T)))
+
+
+def show_slope(
+    name: str, where: str, operator: str, expected: float, shares: list[float], counts: list[int]
+) -> None:
+    x, y = np.log(shares), np.log(counts)
+    half = len(shares) // 2
+    slope, last = np.polyfit(x, y, 1)[0], np.polyfit(x[half:], y[half:], 1)[0]
+    off = "" if abs(slope - expected) <= 0.1 else "  OFF"
+    print(
+        f"{name:8} {where:14} {operator:8} {slope:9.3f} {expected:9.3f} {last:10.3f}  "
+        f"{' '.join(map(str, counts))}{off}",
+        flush=True,
+    )
+
+
+def spread(items: Iterable[ss.Shape], count: int) -> list[ss.Shape]:
+    """So many at most, evenly picked."""
+    every = list(items)
+    return every[:: max(1, len(every) // count)][:count]
+
+
+def random_error(result: FitResult, shape: ss.Shape, count: int, seed: int) -> float:
+    """Largest |s - u| at random points, half in the domain and half in random leaves."""
+    random = np.random.default_rng(seed)
+    boxes, domain = result.spline.mesh.boxes, np.array(result.spline.mesh.domain)
+    largest = 0.0
+    for first in range(0, count, BLOCK):
+        size = min(BLOCK, count - first)
+        box = boxes[random.integers(len(boxes), size=size)]
+        box[: size // 2] = domain
+        points = box[:, :2] + random.random((size, 2)) * (box[:, 2:] - box[:, :2])
+        miss = np.abs(result.spline(points) - ss.signed_distance(shape, points))
+        largest = max(largest, float(miss.max()))
+    return largest
+
+
+def table_d(points: int, count: int) -> None:
+    share = 1e-2
+    head(
+        f"D. {points:,} random points a shape, tolerance {share:g} of the size",
+        f"{'shape':26} leaves     error    random  random/error  random/bound  bound/error",
+    )
+    shapes = [formula_shape(name) for name in SMOOTH]
+    for drawings in (glyphs(), icons()):
+        shapes += spread(drawings.values(), count)
+    shapes += outlines().values()
+    failures, against_error, against_bound, width = [], 0.0, 0.0, 0.0
+    for seed, shape in enumerate(shapes):
+        case = drawn(shape)
+        try:
+            result = case.fit(share)
+        except ToleranceNotReached as missed:
+            failures.append(f"{case.name}: {missed}")
+            continue
+        found = random_error(result, shape, points, 1000 + seed)
+        error, bound = result.error, result.bound or math.nan
+        ratios = found / error, found / bound, bound / error
+        print(
+            f"{case.name:26} {result.cells:6} {error / case.unit:9.3e} {found / case.unit:9.3e} "
+            f"{ratios[0]:13.5f} {ratios[1]:13.5f} {ratios[2]:12.5f}",
+            flush=True,
+        )
+        against_error = max(against_error, ratios[0])
+        against_bound, width = max(against_bound, ratios[1]), max(width, ratios[2])
+        right = {
+            "random <= bound": found <= bound,
+            "error >= 0.99 random": error >= 0.99 * found,
+            "bound <= tolerance": bound <= result.tolerance,
+        }
+        failures += [f"{case.name}: not {what}" for what, holds in right.items() if not holds]
+    print(
+        f"{len(shapes)} shapes, failures: {len(failures)}; largest random/error "
+        f"{against_error:.5f}, random/bound {against_bound:.5f}, bound/error {width:.5f}"
+    )
+    print("\n".join(failures))
+
+
+def table_e() -> None:
+    questions: list[tuple[Case, float | None, float]] = [
+        (case, None, 1e-3)
+        for case in (*map(curve, paper.CURVES), glyph("g"), icon("airplane"))
+    ]
+    levels = ((curve("gamma2"), -0.02), (curve("gamma1"), 0.05), (glyph("S"), 0.02))
+    questions += [(case, level, share) for case, level in levels for share in (1e-4, 1e-5, 1e-6)]
+    head(
+        "E. leaves by operator, and with S by the cells to start from",
+        "shape    where         tolerance         S        W        P        V"
+        "    start 2        4        8",
+    )
+    for case, level, share in questions:
+        counts = [case.fit(share, level=level, operator=name).cells for name in OPERATORS]
+        starts = [
+            case.fit(share, level=level, start=case.start(cells, level)).cells
+            for cells in (2, 4, 8)
+        ]
+        where = "everywhere" if level is None else f"level {level:+.2f}"
+        print(
+            f"{case.name:8} {where:12} {share:10.0e}  {' '.join(f'{n:8}' for n in counts)}   "
+            f"{' '.join(f'{n:8}' for n in starts)}",
+            flush=True,
+        )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Leaves, errors and times of fits.")
+    parser.add_argument("--tables", default="ABCDE", help="which tables")
+    parser.add_argument("--points", type=int, default=1_000_000, help="random points a shape (D)")
+    parser.add_argument("--shapes", type=int, default=12, help="glyphs and icons, of each (D)")
+    options = parser.parse_args()
+    tables: dict[str, Callable[[], None]] = {
+        "A": table_a,
+        "B": table_b,
+        "C": table_c,
+        "D": partial(table_d, options.points, options.shapes),
+        "E": table_e,
+    }
+    if hasattr(os, "getloadavg"):
+        print(f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}")
+    began = time.perf_counter()
+    for name in options.tables.upper():
+        tables[name]()
+    print(f"\n{time.perf_counter() - began:.0f} seconds in all")
+
+
+if __name__ == "__main__":
+    main()
