@@ -19,7 +19,9 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
 
     The bytes go to a temporary file in the same folder, which is flushed to the disk and then
     renamed. If anything is raised on the way, interrupts included, the temporary file is removed
-    and what stood under the name before is untouched. A link is followed, a file's mode is kept.
+    and what stood under the name before is untouched. If the process is killed the temporary file
+    may stay, hidden, as ``.<16 hex digits>.tmp``; it can be deleted. A link is followed, a file's
+    mode is kept.
 
     Raises
     ------

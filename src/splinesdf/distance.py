@@ -158,7 +158,7 @@ def signed_distance_grid(
         Its distances are those of `signed_distance` at these points, found quicker.
     """
     box = shape.default_domain() if domain is None else check_domain(domain)
-    columns, rows = _node_count(nx), _node_count(ny)
+    columns, rows = node_count(nx), node_count(ny)
     farthest = _farthest(max_distance)
     x, y = np.linspace(box[0], box[2], columns), np.linspace(box[1], box[3], rows)
     distance = np.empty((rows, columns))
@@ -267,7 +267,8 @@ def _farthest(max_distance: float | None) -> float:
     return np.inf if max_distance is None else positive(max_distance, "max_distance")
 
 
-def _node_count(count: int) -> int:
+def node_count(count: int) -> int:
+    """How many nodes a grid has along a side: a whole number from 2, or an `InputError`."""
     try:
         number = as_whole(count)
     except TypeError as error:

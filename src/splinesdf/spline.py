@@ -16,7 +16,7 @@ from splinesdf._arrays import Bools, Floats, Ints, as_points
 from splinesdf._blocks import in_blocks, processors
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
-from splinesdf.distance import DistanceGrid, _node_count
+from splinesdf.distance import DistanceGrid, node_count
 from splinesdf.errors import InputError
 from splinesdf.level_sets import contours
 from splinesdf.meshes import Box, Grid, Mesh, Quadtree
@@ -126,8 +126,8 @@ class SplineSDF:
         _check_outside(outside)
         box = self.domain if domain is None else check_domain(domain)
         x, y = (
-            np.linspace(box[0], box[2], _node_count(nx)),
-            np.linspace(box[1], box[3], _node_count(ny)),
+            np.linspace(box[0], box[2], node_count(nx)),
+            np.linspace(box[1], box[3], node_count(ny)),
         )
         if len(x) * len(y) < _NODES * len(self.ordinates):
             nodes = np.stack(np.meshgrid(x, y), axis=-1)

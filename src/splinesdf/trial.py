@@ -118,15 +118,16 @@ class GridTrial:
 
 
 class TreeTrial:
-    """On a quadtree. No distance is asked twice: a node keeps those at its center and corner.
+    """On a quadtree. No distance is asked twice: a node keeps that at its center.
 
-    A corner that several nodes share belongs to the one right of and above it. Of four children
-    one has its parent's corner and one its center there, so that a node costs 1.5 distances.
+    For operator W also that at its lower left corner: a corner belongs to the cell right of and
+    above it. Of four children one has its parent's corner and one its center there, so that a
+    node costs 1.5 distances, and 1 with the other operators.
     """
 
     def __init__(self, shape: Shape, domain: Box, start: tuple[int, int], operator: str) -> None:
-        self._shape, self._domain, self._stencil = shape, domain, STENCILS[operator]
-        self._parity = operator == "P"
+        self._shape, self._domain, self._operator = shape, domain, operator
+        self._stencil = STENCILS[operator]
         self._side = np.array(
             [(domain[2] - domain[0]) / start[0], (domain[3] - domain[1]) / start[1]]
         )
@@ -135,7 +136,9 @@ class TreeTrial:
         every = np.arange(len(nodes.level))
         self._nodes = nodes
         self._centers = self._ask(nodes.level, nodes.place + 0.5)
-        self._corners = self._ask(nodes.level, nodes.place)
+        self._corners = np.full(len(every), np.nan)
+        if operator == "W":
+            self._corners = self._ask(nodes.level, nodes.place)
         self._values = np.full(len(every), np.nan)
         self._ordinates = np.full((len(every), 8), np.nan)
         self._known = _nothing_known(len(every))
@@ -159,7 +162,7 @@ class TreeTrial:
             mine[self._cells[cells]] = theirs
 
     def refine(self, bad: Ints) -> None:
-        """Halve the 3 x 3 cells around each bad cell."""
+        """Halve the 2 x 2 cells around the corner at each bad quarter of bad cells."""
         before = len(self._nodes.level)
         self._nodes = nodes = refined(self._nodes, self._cells[bad], self.known.over[bad])
         count = len(nodes.level) - before
@@ -181,16 +184,18 @@ class TreeTrial:
         every = np.arange(before, len(nodes.level))
         centers = self._ask(nodes.level[every], nodes.place[every] + 0.5)
         self._centers = np.concatenate([self._centers, centers])
+        self._corners = np.concatenate([self._corners, np.full(len(every), np.nan)])
+        if self._operator != "W":
+            return
         parents = np.empty(len(every), dtype=np.int64)
         split = np.flatnonzero(nodes.child >= before)
         for k in range(4):
             parents[nodes.child[split] + k - before] = split
         quarter = (nodes.place[every] & 1).sum(axis=1)
-        corners = np.empty(len(every))
         new = every[quarter == 1]
-        corners[new - before] = self._ask(nodes.level[new], nodes.place[new])
-        corners[quarter == 2] = self._centers[parents[quarter == 2]]
-        self._corners = np.concatenate([self._corners, corners])
+        self._corners[new] = self._ask(nodes.level[new], nodes.place[new])
+        last = quarter == 2
+        self._corners[every[last]] = self._centers[parents[last]]
         # Coarse ones first, as a parent may itself be new.
         for level in np.unique(nodes.level[every]):
             same = (quarter == 0) & (nodes.level[every] == level)
@@ -211,24 +216,20 @@ class TreeTrial:
     def _functional(self, chosen: Ints) -> Floats:
         """The quasi-interpolant's functional of nodes."""
         nodes = self._nodes
-        offsets, weights = self._stencil
-        turned = np.ones(len(chosen), dtype=np.int64)
-        if self._parity:
-            turned -= 2 * (nodes.place[chosen].sum(axis=1) & 1)
-        result = np.zeros(len(chosen))
-        for (x, y), weight in zip(offsets, weights, strict=True):
-            # The cell in whose center, or lower left corner, the sample lies.
-            corner = x % 1.0 != 0.0
-            shift = np.column_stack([turned * int(x), np.full(len(chosen), int(y))])
-            if corner:
-                shift = np.full((len(chosen), 2), (int(x + 0.5), int(y + 0.5)))
-            other = nodes.near[chosen, 4 + 3 * shift[:, 0] + shift[:, 1]]
-            values = (self._corners if corner else self._centers)[np.maximum(other, 0)]
-            far = np.flatnonzero(other < 0)  # beyond the ring around the domain
-            place = nodes.place[chosen[far]] + shift[far] + (0.0 if corner else 0.5)
-            values[far] = self._ask(nodes.level[chosen[far]], place)
-            result += weight * values
-        return result
+        offsets, weights = (np.array(part) for part in self._stencil)
+        # The cells in whose center, or in whose lower left corner, the samples lie: (n, k, 2).
+        corner = offsets[:, 0] % 1.0 != 0.0
+        shift = np.broadcast_to(np.ceil(offsets), (len(chosen), *offsets.shape)).astype(np.int64)
+        if self._operator == "P":
+            shift[:, :, 0] *= 1 - 2 * (nodes.place[chosen].sum(axis=1) & 1)[:, None]
+        other = nodes.near[chosen[:, None], 4 + 3 * shift[..., 0] + shift[..., 1]]
+        known = np.maximum(other, 0)
+        values = np.where(corner, self._corners[known], self._centers[known])
+        cell, sample = np.nonzero(other < 0)  # beyond the ring around the domain
+        within = np.where(corner, 0.0, 0.5)[sample, None]
+        place = nodes.place[chosen[cell]] + shift[cell, sample] + within
+        values[cell, sample] = self._ask(nodes.level[chosen[cell]], place)
+        return np.asarray(values @ weights)
 
     def _ask(self, level: Ints, place: NDArray[Any]) -> Floats:
         """Exact distances at places (n, 2) in cells of a level from the domain's corner."""
