@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from threading import current_thread
 
 # Points a thread takes at a time. Fewer: the pool's overhead shows (about 50 µs a block); more:
 # the last block keeps one core busy alone, and a block's arrays leave the second-level cache.
 _BLOCK = 8192
+_NAME = "splinesdf-blocks"
 
 
 def processors() -> int:
@@ -18,15 +21,27 @@ def processors() -> int:
     return os.cpu_count() or 1
 
 
+@cache
+def _pool(workers: int) -> ThreadPoolExecutor:
+    """Threads that stay: to make them anew can take longer than the work."""
+    return ThreadPoolExecutor(workers, thread_name_prefix=_NAME)
+
+
+if hasattr(os, "register_at_fork"):
+    # A child process has none of its parent's threads.
+    os.register_at_fork(after_in_child=_pool.cache_clear)
+
+
 def in_blocks(count: int, work: Callable[[slice], None], *, size: int = _BLOCK) -> None:
     """Call ``work(part)`` for slices of ``size`` that cover ``range(count)``.
 
-    Kernels release the GIL, so the threads' work overlaps.
+    Kernels release the GIL, so the threads' work overlaps. Called from within such work, it does
+    all of it itself: threads that wait for each other would wait forever.
     """
     parts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
-    if len(parts) <= 1 or processors() == 1:
+    workers = processors()
+    if len(parts) <= 1 or workers == 1 or current_thread().name.startswith(_NAME):
         for part in parts:
             work(part)
         return
-    with ThreadPoolExecutor(processors()) as pool:
-        list(pool.map(work, parts))  # the list raises what a block raised
+    list(_pool(workers).map(work, parts))  # the list raises what a block raised
