@@ -128,8 +128,9 @@ def fit(
         Largest |s - u| allowed, in the shape's unit.
     space : {"hierarchical", "tensor", "uniform"}
     operator : {"S", "W", "V", "P"}, optional
-        The quasi-interpolant, see `splinesdf.quasi`: S unless given, and W on a tensor grid,
-        which has no S. P reproduces quadratics across levels.
+        The quasi-interpolant, see `splinesdf.quasi`. Unless given S, which needs the fewest cells
+        at ridges of the distance; for bands P, which reproduces quadratics across levels and
+        needs the fewest around smooth levels; W on a tensor grid, which has neither.
     band : pair of float, or several, optional
         Keep the tolerance only where lo <= u <= hi or lo <= s <= hi; elsewhere the spline may
         be anything that does not take values of the band.
@@ -142,8 +143,9 @@ def fit(
     min_side : float
         Stop when a cell that is not good enough has a side below twice this.
     certify : bool
-        Refine until the tolerance is proved to be kept. It costs next to nothing. Otherwise what
-        a proof would need a closer look for is sampled and believed, and ``bound`` is None.
+        Refine until the tolerance is proved to be kept. It costs little, but for outlines of
+        thousands of corners at a coarse tolerance: twice the time. Otherwise what a proof would
+        need a closer look for is sampled and believed, and ``bound`` is None.
 
     Returns
     -------
@@ -204,10 +206,11 @@ def fit_steps(
     certify: bool = True,
 ) -> Iterator[FitResult]:
     """The loop of `fit`, one result a round; the last one says why it ended and raises nothing."""
-    if operator is None:
-        operator = "W" if space == "tensor" else "S"
-    check_operator(operator)
     bands = _check_bands(band)
+    if operator is None:
+        # The fewest cells, by docs/fit.md: S where there are ridges, P around smooth levels.
+        operator = "W" if space == "tensor" else "P" if len(bands) else "S"
+    check_operator(operator)
     outward = float(max(bands.max(initial=0.0), 0.0))
     box = shape.default_domain(outward) if domain is None else check_domain(domain)
     largest = max(abs(value) for value in (*shape.box, *box))

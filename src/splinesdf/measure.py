@@ -286,7 +286,7 @@ def _steepest(triangles: Floats) -> Floats:
     aa, bb, cc, ab, bc, ca = triangles[:, 6:].T
     scale = 2.0 / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     squared = np.zeros(len(triangles))
-    for along_u, along_v in ((aa - ca, ab - bc), (ab - ca, bb - bc), (ca - cc, bc - cc)):
+    for along_u, along_v in ((aa - ca, ab - ca), (ab - bc, bb - bc), (ca - cc, bc - cc)):
         x = along_u * v[:, 1] - along_v * u[:, 1]
         y = along_v * u[:, 0] - along_u * v[:, 0]
         squared = np.maximum(squared, x * x + y * y)

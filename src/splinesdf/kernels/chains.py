@@ -17,8 +17,9 @@ from splinesdf.kernels.feet import derivatives
 # Chains that a triangle may see: beyond it, it is halved.
 _CHAINS = 6
 # Chains whose tangents differ by less than this (radians) where arclets meet go on smoothly: what
-# the joint may change is added to the bound. Compiled pieces meet within 1e-9.
-_SMOOTH = 1e-6
+# the joint may change is added to the bound. Compiled pieces meet within 1e-9. Larger: what the
+# cosine of the angle takes from a distance is no longer lost in rounding; smaller: more corners.
+_SMOOTH = 1e-7
 # A corner in which the curve turns back up to this (the sine of what is left) is a cusp.
 _CUSP = 1e-3
 # Nearer to a focal point than this (as 1 + kappa u) remainders are too large to be of use.

@@ -243,8 +243,8 @@ def _steepest(triangle: Floats, c: Floats) -> float:
     scale = 2.0 / abs(ux * vy - uy * vx)
     steepest = 0.0
     for pair in (
-        (c[0] - c[5], c[3] - c[4]),
-        (c[3] - c[5], c[1] - c[4]),
+        (c[0] - c[5], c[3] - c[5]),
+        (c[3] - c[4], c[1] - c[4]),
         (c[5] - c[2], c[4] - c[2]),
     ):
         # The gradient g has g . u = 2 pair[0] and g . v = 2 pair[1].

@@ -55,11 +55,13 @@ def gather(
             continue
         first = -(vx * row[5] + vy * row[6])
         last = (arcs[i, 1] - px) * row[7] + (arcs[i, 2] - py) * row[8]
-        if degree > 1 and not _convex(second[i], vx, vy, r):
-            # What is known is a lower bound, and some upper one.
+        if not row[1] < np.inf or (degree > 1 and not _convex(second[i], vx, vy, r)):
+            # Its directions are not known, or it may have several feet. What is known is a lower
+            # bound of the distance, and some upper one.
             value = min(vx * vx + vy * vy, (arcs[i, 1] - px) ** 2 + (arcs[i, 2] - py) ** 2)
             nearest = min(nearest, math.sqrt(value))
-            lowest[j] = max(lowest[j], _lower_bound(arcs, i, vx, vy))
+            if degree > 1:
+                lowest[j] = max(lowest[j], _lower_bound(arcs, i, vx, vy))
             near[j, 0] = -max(lowest[j], 1e-300)
             continue
         if first >= 0.0:
