@@ -83,7 +83,7 @@ def find_chains(
     """Fill a model of the distance for each chain; how many, 0 if there is no such structure.
 
     A row of ``models``: the distance to the chain with its own sign, its gradient, its second
-    derivative along the level set, the remainder's bound (2.7), and 1 if points of the disk can
+    derivative along the level set, the remainder's bound (2.9), and 1 if points of the disk can
     have their foot in the chain's first or last point.
     """
     arcs, following = arclets.arcs, arclets.following
@@ -182,7 +182,7 @@ def _model(
     ended = ended or not sided
     if cones == 0:
         # Feet move by no more than 2 r / (1 + kappa u) along the curve, if that is not halved on
-        # the way (2.8).
+        # the way (2.9).
         here = 1.0 + near[foot, 4] * u
         change = 2.0 * r / here * slope + jumps
         near_low, near_high = max(low, near[foot, 4] - change), min(high, near[foot, 4] + change)
@@ -267,7 +267,7 @@ def find_points(
     """Fill models of the distances to points of the curve, one of which is nearly the closest.
 
     How many, 0 if it takes too many. The distance is smaller than the least of theirs by no more
-    than ``spare`` (2.10).
+    than ``spare`` (3.1).
     """
     px, py, r = disk
     nearest = np.inf

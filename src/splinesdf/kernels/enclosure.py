@@ -45,8 +45,6 @@ _DEAR = 8
 _ADDED, _SHARE_STEPS = 6, 8
 # Rounding in distances and ordinates, as a share of the largest coordinate.
 _GRAIN = 256 * 2.220446049250313e-16
-# The largest product of three numbers a b^2 with a^2 + b^2 = 1, times three.
-_MIXED = 1.1547005383792517
 
 
 @kernel
@@ -324,7 +322,7 @@ def _bound(
 
 @kernel
 def _mean(models: Floats, chains: int, enough: float) -> float:
-    """A lower bound of the largest of all differences on a triangle: that of a mean of some (2.9).
+    """A lower bound of the largest of all differences on a triangle: that of a mean of some (2.10).
 
     To the best one, another is added that is large where the mean is smallest, a few times.
     """

@@ -12,9 +12,6 @@ import numpy as np
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
 
-# Arclets near a triangle that are looked at. More: slower in cells where many meet; fewer: cells
-# around a detail of many short arclets must be cut smaller until few are near.
-_MOST = 32
 # Halley's steps toward a foot on an arclet with a convex squared distance; the third power of a
 # step's error is left, so six are plenty, and a bracket keeps them safe.
 _STEPS = 12
@@ -43,7 +40,7 @@ def gather(
     """
     px, py, r = disk
     nearest = np.inf
-    lowest = np.empty(_MOST)
+    lowest = np.empty(near.shape[0])
     for j in range(count):
         i = ids[j]
         row = rows[i]
