@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from splinesdf.meshes import Quadtree
+from splinesdf.meshes import Mesh, Quadtree
 
 Functional = Callable[[int, np.ndarray], np.ndarray]
 
@@ -159,3 +159,13 @@ def _contains(cells: np.ndarray, index: np.ndarray) -> np.ndarray:
 def _quarters(index: np.ndarray) -> np.ndarray:
     quarter = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
     return (2 * index[:, None] + quarter).reshape(-1, 2)
+
+
+def cells_at(mesh: Mesh, points: np.ndarray) -> np.ndarray:
+    """The cell of each point, by looking at all; the domain's far borders are its last cells'."""
+    low, high = mesh.boxes[:, :2], mesh.boxes[:, 2:]
+    beyond = np.where(high == np.array(mesh.domain[2:]), np.inf, high)
+    result = np.empty(len(points), dtype=np.int64)
+    for k, point in enumerate(points):
+        (result[k],) = np.flatnonzero(np.all((low <= point) & (point < beyond), axis=1))
+    return result

@@ -16,7 +16,7 @@ from splinesdf.meshes import Grid, Mesh, Quadtree
 from splinesdf.spaces import hierarchical_ordinates, tensor_ordinates
 from splinesdf.spaces.cells import TRIANGLES, center_ordinates
 from splinesdf.spline import SplineSDF
-from tests.naive_tree import refine
+from tests.naive_tree import cells_at, refine
 from tests.shapes import UNIT, gamma
 from tests.test_spaces import random_quadtree
 
@@ -36,7 +36,9 @@ MESHES: dict[str, Callable[[], Mesh]] = {
 def corner_quadtree(levels: int) -> Quadtree:
     mesh = Quadtree.uniform((0.0, 0.0, 2.0, 1.0), 2, 1)
     for _ in range(levels):
-        mesh = refine(mesh, np.arange(len(mesh.leaves)) == mesh.locate(np.array([[2.0, 0.0]]))[0])
+        mesh = refine(
+            mesh, np.arange(len(mesh.leaves)) == cells_at(mesh, np.array([[2.0, 0.0]]))[0]
+        )
     return mesh
 
 
@@ -113,7 +115,7 @@ def test_values_gradients_and_hessians_are_those_of_the_cells_bernstein_forms(na
     points = np.concatenate(
         [RANDOM.uniform(low, high, (3000, 2)), inner.reshape(-1, 2), boxes[:, :2], boxes[:, 2:]]
     )
-    cells = spline.mesh.locate(points)
+    cells = cells_at(spline.mesh, points)
     expected = bernstein(spline, cells, points)
     side = (boxes[:, 2:] - boxes[:, :2]).min(axis=1)[cells]
     # Rounding: ordinates of a few units; each derivative divides by the cell's side.

@@ -23,6 +23,7 @@ from splinesdf.meshes.mesh import check_domain
 from splinesdf.meshes.quadtree import DEEPEST
 from splinesdf.provenance import Provenance
 from splinesdf.quasi import check_operator
+from splinesdf.spaces.cells import center_ordinates
 from splinesdf.spline import SplineSDF
 from splinesdf.trial import GridTrial, TreeTrial, Trial
 
@@ -234,7 +235,7 @@ def fit_steps(
         error, bound = float(known.low[known.counts].max(initial=0.0)), None
         if stopped != "refining":
             error, bound = largest_error(shape, spline, trial.center, bands, known)
-        middle = np.abs(spline.ordinates[:, 4:].mean(axis=1) - trial.center)
+        middle = np.abs(center_ordinates(spline.ordinates)[1] - trial.center)
         center = float(middle[known.counts].max(initial=0.0))
         history = (*history, FitStep(spline.mesh, count, error, center, trial.evaluations))
         made = Provenance(

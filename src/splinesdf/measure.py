@@ -184,6 +184,8 @@ def _sample(search: _Search, part: Ints, triangles: Floats, last: bool) -> tuple
     Within r of a point p, |s - u| <= |s(p) - u(p)| + (1 + G) r, with G the largest slope of s:
     the distance is 1-Lipschitz.
     """
+    from splinesdf.kernels.enclosure import quarter, steepest
+
     low, high, counts = search.low, search.high, search.counts
     wanted = search.wanted
     middle = 0.5 * (triangles[:, 0:2] + triangles[:, 2:4])
@@ -192,7 +194,9 @@ def _sample(search: _Search, part: Ints, triangles: Floats, last: bool) -> tuple
     exact = signed_distance(search.shape, middle + search.shape.boundary.origin)
     c = triangles[:, 6:]
     error = np.abs(0.25 * (c[:, 0] + 2.0 * c[:, 3] + c[:, 1]) - exact)
-    bound = error + (1.0 + _steepest(triangles)) * reach
+    slope = np.empty(len(part))
+    steepest(triangles, slope)
+    bound = error + (1.0 + slope) * reach
     if not wanted.proved and last:
         bound = error
     meets = np.ones(len(part), dtype=np.bool_)
@@ -207,7 +211,9 @@ def _sample(search: _Search, part: Ints, triangles: Floats, last: bool) -> tuple
     bound[known > wanted.enough] = np.inf
     np.maximum.at(high, part[closed], bound[closed])
     goes_on = meets & ~closed
-    return np.repeat(part[goes_on], 4), _halves(_halves(triangles[goes_on]))
+    quarters = np.empty((4 * np.count_nonzero(goes_on), 12))
+    quarter(triangles[goes_on], quarters)
+    return np.repeat(part[goes_on], 4), quarters
 
 
 def largest_error(
@@ -235,7 +241,7 @@ def largest_error(
     """
     bands = np.empty((0, 2)) if bands is None else bands
     if known is None:
-        error = np.abs(spline.ordinates[:, 4:].mean(axis=1) - center)
+        error = np.abs(center_ordinates(spline.ordinates)[1] - center)
         wanted = Wanted((1.0 + TIGHT) * float(error.max()))
         known = cell_errors(shape, spline, np.arange(len(center)), center, bands, wanted)
     low, high = (np.where(known.counts, values, 0.0) for values in known[:2])
@@ -278,27 +284,3 @@ def _quarters(boxes: Floats, ordinates: Floats) -> Floats:
         for a, side, b in TRIANGLES
     ]
     return np.stack(quarters, axis=1).reshape(-1, 12)
-
-
-def _steepest(triangles: Floats) -> Floats:
-    """The largest slope of quadratics on triangles; it is taken at a corner."""
-    u, v = triangles[:, 0:2] - triangles[:, 4:6], triangles[:, 2:4] - triangles[:, 4:6]
-    aa, bb, cc, ab, bc, ca = triangles[:, 6:].T
-    scale = 2.0 / np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    squared = np.zeros(len(triangles))
-    for along_u, along_v in ((aa - ca, ab - ca), (ab - bc, bb - bc), (ca - cc, bc - cc)):
-        x = along_u * v[:, 1] - along_v * u[:, 1]
-        y = along_v * u[:, 0] - along_u * v[:, 0]
-        squared = np.maximum(squared, x * x + y * y)
-    return np.asarray(scale * np.sqrt(squared))
-
-
-def _halves(triangles: Floats) -> Floats:
-    """Both halves of triangles, one after the other: (n, 12) -> (2 n, 12)."""
-    a, b, c = triangles[:, 0:2], triangles[:, 2:4], triangles[:, 4:6]
-    aa, bb, cc, ab, bc, ca = triangles[:, 6:].T
-    am, mb, mc = 0.5 * (aa + ab), 0.5 * (ab + bb), 0.5 * (ca + bc)
-    mm, m = 0.5 * (am + mb), 0.5 * (a + b)
-    one = np.column_stack([c, a, m, cc, aa, mm, ca, am, mc])
-    other = np.column_stack([b, c, m, bb, cc, mm, bc, mc, mb])
-    return np.stack([one, other], axis=1).reshape(-1, 12)

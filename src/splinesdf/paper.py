@@ -33,6 +33,7 @@ from splinesdf.errors import InputError
 from splinesdf.measure import largest_error
 from splinesdf.meshes import Box, Grid
 from splinesdf.quasi import quasi_interpolate
+from splinesdf.spaces.cells import center_ordinates
 from splinesdf.spline import SplineSDF
 
 MeshName = Literal["uniform", "tensor"]
@@ -211,7 +212,7 @@ def rounds(name: str, mesh: MeshName, operator: str) -> Iterator[Round]:
     while True:
         spline = quasi_interpolate(distance, grid, operator)
         center = distance(0.5 * (grid.boxes[:, :2] + grid.boxes[:, 2:]))
-        errors = np.abs(spline.ordinates[:, 4:].mean(axis=1) - center)
+        errors = np.abs(center_ordinates(spline.ordinates)[1] - center)
         yield Round(spline, grid, center, errors)
         k += 1
         if mesh == "uniform":

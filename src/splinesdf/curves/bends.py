@@ -14,6 +14,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets, Bends
+from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import end_tangents
 
 # Equal parts of an arclet that are bounded one by one. More: closer ranges where the parameter's
@@ -31,7 +32,7 @@ _SLACK = 1e-12
 
 def bends(arclets: Arclets) -> Bends:
     """Ranges of curvature and unit tangents of all arclets."""
-    degree = arclets.arcs[:, 0].astype(np.int64)
+    degree = degrees(arclets)
     count = len(degree)
     curvature = np.zeros((count, 5))
     largest = float(np.abs(arclets.boxes[0]).max())
@@ -39,7 +40,7 @@ def bends(arclets: Arclets) -> Bends:
         rows = np.flatnonzero(degree == d)
         power = arclets.power[rows, 1 : d + 1]
         if d > 1:
-            curvature[rows] = _curvatures(power)
+            curvature[rows] = _curvatures(control_points(arclets.power[rows, : d + 1]))
         steps = np.stack([power[:, 0], np.sum(np.arange(1, d + 1)[:, None] * power, axis=1)])
         speed = np.hypot(steps[..., 0], steps[..., 1]).min(axis=0)
         curvature[rows[speed < (_SLOW if d > 1 else _SHORT) * largest]] = _UNKNOWN
@@ -75,33 +76,22 @@ def _extents(arclets: Arclets, degree: Ints) -> Floats:
     grain = 16.0 * np.finfo(np.float64).eps * float(np.abs(arclets.boxes[0]).max())
     for d in np.unique(degree):
         rows = np.flatnonzero(degree == d)
-        control = _control(arclets.power[rows, 1 : d + 1])
+        control = control_points(arclets.power[rows, : d + 1])
         steps = d * np.diff(control, axis=1)
         result[rows, 0] = np.hypot(steps[..., 0], steps[..., 1]).max(axis=1) * (1.0 + _SLACK)
         result[rows, 1] = thickness(control) * (1.0 + _SLACK) + grain
     return result
 
 
-def _control(power: Floats) -> Floats:
-    """Control points of arcs that start at 0: (n, d, 2), from t on, -> (n, d + 1, 2)."""
-    count, d = power.shape[:2]
-    control = np.zeros((count, d + 1, 2))
-    for k in range(d + 1):
-        for j in range(1, k + 1):
-            control[:, k] += math.comb(k, j) / math.comb(d, j) * power[:, j - 1]
-    return control
-
-
-def _curvatures(power: Floats) -> Floats:
+def _curvatures(control: Floats) -> Floats:
     """Smallest and largest curvature, largest |d kappa / ds|, curvature at both ends, (n, 5).
 
     Parameters
     ----------
-    power : ndarray, shape (n, d, 2)
-        Power basis from t on. Infinite ranges where the speed may vanish.
+    control : ndarray, shape (n, d + 1, 2)
+        Bézier arcs. Infinite ranges where the speed may vanish.
     """
-    count, d = power.shape[:2]
-    control = _control(power)
+    count, d = len(control), control.shape[1] - 1
     result = np.empty((count, 5))
     low, high, slope = np.full(count, np.inf), np.full(count, -np.inf), np.zeros(count)
     for part in range(_PARTS):

@@ -70,12 +70,28 @@ def enclose(
 
 
 @kernel
-def _stack() -> tuple[Floats, Floats, Ints, Ints, Floats, Floats]:
+def steepest(triangles: Floats, slopes: Floats) -> None:
+    """Fill the largest slope of the spline on each triangle (n, 12)."""
+    for k in range(triangles.shape[0]):
+        slopes[k] = _steepest(triangles[k])
+
+
+@kernel
+def quarter(triangles: Floats, quarters: Floats) -> None:
+    """Fill the halves of both halves of each triangle: (n, 12) -> (4 n, 12)."""
+    for k in range(triangles.shape[0]):
+        quarters[4 * k] = triangles[k]
+        _halve(quarters, 4 * k, 4 * k + 2)
+        _halve(quarters, 4 * k, 4 * k + 1)
+        _halve(quarters, 4 * k + 2, 4 * k + 3)
+
+
+@kernel
+def _stack() -> tuple[Floats, Ints, Ints, Floats, Floats]:
     """Room for the parts of a triangle that are still to be looked at, and for one of them."""
     size = _DEPTH + 4
     return (
-        np.empty((size, 6)),  # corners A B C
-        np.empty((size, 6)),  # coefficients
+        np.empty((size, 12)),  # corners A B C, coefficients
         np.empty((size, 3), dtype=np.int64),  # how often halved, how many arclets, which half
         np.empty((size, _MOST), dtype=np.int64),  # those arclets
         np.empty((_MOST, 8)),  # see `gather`
@@ -90,15 +106,15 @@ def _enclose_one(
     candidates: Candidates,
     asked: Asked,
     k: int,
-    stack: tuple[Floats, Floats, Ints, Ints, Floats, Floats],
+    stack: tuple[Floats, Ints, Ints, Floats, Floats],
     brackets: Brackets,
 ) -> None:
     """Bracket the error on both halves of triangle k."""
     arcs, rows, second = arclets.arcs, bends.rows, bends.second
-    corners, coefficients, sizes, lists, near, models = stack
+    parts, sizes, lists, near, models = stack
     group = asked.group[k]
     kept = candidates.nodes[candidates.starts[group] : candidates.starts[group + 1]]
-    corners[0], coefficients[0] = asked.triangles[k, :6], asked.triangles[k, 6:]
+    parts[0] = asked.triangles[k]
     sizes[0, 0], sizes[0, 1], sizes[0, 2] = 0, _listed(arclets.tree, kept, lists[0]), 0
     size = 1
     anchor_x, anchor_y, anchored = asked.anchor[k, 0], asked.anchor[k, 1], asked.anchor[k, 2]
@@ -115,7 +131,7 @@ def _enclose_one(
         low = lows[half] if depth > 0 else min(lows[0], lows[1])
         if low > asked.enough:
             continue
-        triangle, c = corners[size], coefficients[size]
+        triangle, c = parts[size], parts[size, 6:]
         px, py = 0.5 * (triangle[0] + triangle[2]), 0.5 * (triangle[1] + triangle[3])
         r = _radius(triangle, px, py)
         exact = False
@@ -132,12 +148,12 @@ def _enclose_one(
             elif exact:
                 sign = side_of(bends, lists[size], near, sizes[size, 1], nearest, grain)
         if exact:
-            chains = find_chains(arclets, bends, lists[size], sizes[size, 1], px, py, r, stack[4:])
+            chains = find_chains(arclets, bends, lists[size], sizes[size, 1], px, py, r, stack[3:])
             if (chains > 1 or models[0, 5] > 0.0) and (sign == 0 or nearest <= r + grain):
                 chains = 0
             if sign != 0:
                 value = 0.25 * (c[0] + 2.0 * c[3] + c[1]) - sign * nearest
-                reach = (1.0 + _steepest(triangle, c)) * r + grain
+                reach = (1.0 + _steepest(triangle)) * r + grain
                 lo, hi, found = value - reach, value + reach, abs(value) - grain
         if chains == 0 and sizes[size, 1] >= 0 and sign != 0 and depth >= _POINT_DEPTH:
             spare = _SPARE * max(asked.threshold, low) * 0.5 ** (0.5 * depth)
@@ -181,13 +197,12 @@ def _enclose_one(
                 place = brackets.open_count[0]
                 brackets.open_count[0] += 1
                 brackets.open_from[place] = 2 * k + half
-                brackets.open_triangles[place, :6] = triangle
-                brackets.open_triangles[place, 6:] = c
+                brackets.open_triangles[place] = triangle
                 continue
             if good or depth == _DEPTH or effort > asked.effort:
                 highs[half] = max(highs[half], bound)
                 continue
-        _halve(corners, coefficients, size)
+        _halve(parts, size, size + 1)
         sizes[size, 0] = depth + 1
         sizes[size + 1] = sizes[size]
         if depth == 0:
@@ -198,17 +213,14 @@ def _enclose_one(
 
 
 @kernel
-def _halve(corners: Floats, coefficients: Floats, at: int) -> None:
-    """Put both halves of a triangle in its place and the next one."""
-    ax, ay, bx, by, cx, cy = corners[at]
-    aa, bb, cc, ab, bc, ca = coefficients[at]
+def _halve(parts: Floats, at: int, other: int) -> None:
+    """Put one half of triangle ``at`` in its place and the other one in place ``other``."""
+    ax, ay, bx, by, cx, cy, aa, bb, cc, ab, bc, ca = parts[at]
     mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
     am, mb, mc = 0.5 * (aa + ab), 0.5 * (ab + bb), 0.5 * (ca + bc)
     mm = 0.5 * (am + mb)
-    corners[at] = (cx, cy, ax, ay, mx, my)
-    coefficients[at] = (cc, aa, mm, ca, am, mc)
-    corners[at + 1] = (bx, by, cx, cy, mx, my)
-    coefficients[at + 1] = (bb, cc, mm, bc, mc, mb)
+    parts[at] = (cx, cy, ax, ay, mx, my, cc, aa, mm, ca, am, mc)
+    parts[other] = (bx, by, cx, cy, mx, my, bb, cc, mm, bc, mc, mb)
 
 
 @kernel
@@ -234,8 +246,9 @@ def _radius(triangle: Floats, px: float, py: float) -> float:
 
 
 @kernel
-def _steepest(triangle: Floats, c: Floats) -> float:
+def _steepest(triangle: Floats) -> float:
     """The largest slope of the spline on a triangle: its gradient is linear, so at a corner."""
+    c = triangle[6:]
     ux, uy = triangle[0] - triangle[4], triangle[1] - triangle[5]
     vx, vy = triangle[2] - triangle[4], triangle[3] - triangle[5]
     scale = 2.0 / abs(ux * vy - uy * vx)

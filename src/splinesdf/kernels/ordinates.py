@@ -226,25 +226,13 @@ def _fetch_and_compute(
             a, s, t = rows[k], local[0, k], local[1, k]
             right = s - t if s > t else 0.0
             left = s + t if s > -t else 0.0
-            value[first + k] = (
-                a[0]
-                + s * (a[1] + a[3] * s + a[4] * t)
-                + t * (a[2] + a[5] * t)
-                + a[6] * right * right
-                + a[7] * left * left
-            )
+            value[first + k] = _value(a, s, t, right, left)
         return
     for k in range(count):
         a, s, t = rows[k], local[0, k], local[1, k]
         right = s - t if s > t else 0.0
         left = s + t if s > -t else 0.0
-        value[first + k] = (
-            a[0]
-            + s * (a[1] + a[3] * s + a[4] * t)
-            + t * (a[2] + a[5] * t)
-            + a[6] * right * right
-            + a[7] * left * left
-        )
+        value[first + k] = _value(a, s, t, right, left)
         across, along = 2.0 * a[6] * right, 2.0 * a[7] * left
         in_s = a[1] + 2.0 * a[3] * s + a[4] * t + across + along
         in_t = a[2] + a[4] * s + 2.0 * a[5] * t - across + along
@@ -257,6 +245,17 @@ def _fetch_and_compute(
             hessian[first + k, 0] = (2.0 * a[3] + across + along) * in_x * in_x
             hessian[first + k, 1] = (a[4] - across + along) * in_x * in_y
             hessian[first + k, 2] = (2.0 * a[5] + across + along) * in_y * in_y
+
+
+@kernel
+def _value(a: Floats, s: float, t: float, right: float, left: float) -> float:
+    return float(
+        a[0]
+        + s * (a[1] + a[3] * s + a[4] * t)
+        + t * (a[2] + a[5] * t)
+        + a[6] * right * right
+        + a[7] * left * left
+    )
 
 
 @kernel

@@ -79,14 +79,6 @@ class Grid:
         i, j = 2 * np.repeat(np.arange(m), n), 2 * np.tile(np.arange(n), m)
         return np.column_stack([i, j, i + 2, j + 2])
 
-    def locate(self, points: Floats) -> Ints:
-        """The cell of each point; the domain's right and upper border belong to its last cells."""
-        from splinesdf.kernels.locate import locate_grid  # Numba loads only when it is used
-
-        cells = np.empty(len(points), dtype=np.int64)
-        locate_grid(self.x, self.y, points, cells)
-        return cells
-
     def halve(self) -> Grid:
         """Every cell in four."""
         return self.insert(np.ones(self.shape[0], dtype=bool), np.ones(self.shape[1], dtype=bool))

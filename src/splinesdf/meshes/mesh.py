@@ -32,9 +32,6 @@ class Mesh(Protocol):
         of it, and so on.
         """
 
-    def locate(self, points: Floats) -> Ints:
-        """The cell of each point, (n, 2) -> (n,); -1 outside the domain or not finite."""
-
 
 def check_domain(domain: Box) -> Box:
     """The domain as floats, or an `InputError`."""

@@ -136,15 +136,6 @@ class Quadtree:
         low = self.index[self.leaves] * size
         return np.concatenate([low, low + size], axis=1)
 
-    def locate(self, points: Floats) -> Ints:
-        """The cell of each point; the domain's right and upper border belong to its last cells."""
-        from splinesdf.kernels.locate import locate_tree  # Numba loads only when it is used
-
-        cells = np.empty(len(points), dtype=np.int64)
-        domain, shape = np.array(self.domain), np.array(self.shape)
-        locate_tree(domain, shape, self.child, self.cell_of, points, cells)
-        return cells
-
 
 def _quarters(index: Ints) -> Ints:
     """The children of cells, one after the other: (n, 2) -> (4 n, 2)."""

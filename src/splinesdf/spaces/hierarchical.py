@@ -49,23 +49,8 @@ def hierarchical_ordinates(mesh: Quadtree, functional: Functional) -> Floats:
     -------
     ndarray, shape (n_cells, 8)
     """
-    nodes = roots(mesh.shape)
-    numbers = _inside(mesh.shape)  # those of the mesh's nodes, level after level
-    level = 0
-    first = 0
-    while True:
-        here = mesh.child[first : first + len(numbers)] >= 0
-        if not here.any():
-            break
-        first += len(numbers)
-        split = np.zeros(len(nodes.level), dtype=np.bool_)
-        split[numbers[here]] = True
-        around = nodes.near[numbers[here]]
-        around = around[around >= 0]
-        split[around[outside(nodes)[around]]] = True
-        nodes = grown(nodes, split)
-        numbers = (nodes.child[numbers[here]][:, None] + np.arange(4)).reshape(-1)
-        level += 1
+    split = mesh.child >= 0
+    nodes = _split(roots(mesh.shape), np.column_stack([mesh.level, mesh.index])[split])
     own = owned(nodes)
     values = np.zeros(len(nodes.level))
     for level in range(int(nodes.level.max()) + 1):
@@ -89,7 +74,7 @@ def _inside(shape: tuple[int, int]) -> Ints:
     return np.arange((m + 2) * (n + 2)).reshape(m + 2, n + 2)[1:-1, 1:-1].reshape(-1)
 
 
-def grown(nodes: Nodes, split: Bools) -> Nodes:
+def _grown(nodes: Nodes, split: Bools) -> Nodes:
     """The tree with four children below each node that is to be split; old nodes keep their number.
 
     Nodes of the ring beside it must be split with it.
@@ -114,16 +99,21 @@ def refined(nodes: Nodes, bad: Ints, quarters: Bools) -> Nodes:
     child of a cell reaches into the cells beside that quarter: the 2 x 2 cells around the corner
     at which the quarter lies (SW SE NW NE) are split.
     """
-    from splinesdf.kernels.hierarchy import mark  # Numba loads only when it is used
-
     cell, quarter = np.nonzero(quarters)
     cells = np.column_stack([nodes.level[bad], nodes.place[bad]])[cell]
-    targets = np.ascontiguousarray((cells[:, None] + _BESIDE[quarter]).reshape(-1, 3))
+    return _split(nodes, (cells[:, None] + _BESIDE[quarter]).reshape(-1, 3))
+
+
+def _split(nodes: Nodes, targets: Ints) -> Nodes:
+    """The tree in which cells (k, 3), each a level and its place there, are split."""
+    from splinesdf.kernels.hierarchy import mark  # Numba loads only when it is used
+
+    targets = np.ascontiguousarray(targets)
     again = True
     while again:
         split = np.zeros(len(nodes.level), dtype=np.bool_)
         again = mark(nodes, targets, split)
-        nodes = grown(nodes, split)
+        nodes = _grown(nodes, split)
     return nodes
 
 
@@ -138,12 +128,6 @@ def _linked(shape: Ints, level: Ints, index: Ints, child: Ints) -> Nodes:
 
 def _coarse_first(nodes: Nodes) -> Ints:
     return np.argsort(nodes.level.astype(np.uint8), kind="stable")
-
-
-def outside(nodes: Nodes) -> Bools:
-    """Which nodes are of the ring around the domain."""
-    limit = nodes.shape << nodes.level[:, None]
-    return np.asarray(np.any((nodes.place < 0) | (nodes.place >= limit), axis=1))
 
 
 def owned(nodes: Nodes) -> Bools:
