@@ -39,6 +39,9 @@ class Contour:
         The level: which distance to the shape the contour stands for.
     y_down : bool
         The source's y axis points down (SVG). The coordinates are as in the source.
+    parent : Contour, optional
+        The contour of the same level that directly encloses this one: None for an outermost one,
+        an outer one for a hole, a hole for what lies in it.
     """
 
     arcs: Floats
@@ -46,6 +49,7 @@ class Contour:
     closed: bool = True
     distance: float = 0.0
     y_down: bool = False
+    parent: Contour | None = None
 
     def __post_init__(self) -> None:
         if self.arcs.ndim != 3 or self.arcs.shape[1:] != (3, 2) or len(self.arcs) == 0:
