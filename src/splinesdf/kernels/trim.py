@@ -37,6 +37,10 @@ _OWN_TURN = 2.0
 _TURNING = 12
 # An arclet that may bend without limit, next to a cusp, is taken in so many equal parts.
 _CUSP_PARTS = 64
+# A stretch whose reach is not small against |d| is halved rather than compared with more than a few
+# arclets, as most of it will soon be seen to be no offset at all. More: time is spent on those;
+# fewer: on stretches.
+_COARSE, _FEW = 32.0, 24
 # A joint that turns by half a turn within this (radians) is a cusp: branches so close may cross
 # once more, so the offset is compared with the exact distance near them.
 _CUSP = 1e-3
@@ -48,8 +52,9 @@ _BESIDE = 0.7
 # Steps to where the offset is left. Bisection alone would need 53; the secants need about 8.
 _STEPS = 80
 # Stretches of one element that are looked at. Only where two boundaries are |d| apart to rounding
-# over a length are there so many; then a stretch counts as its middle does.
-_PATIENCE = 20_000
+# over a length are there so many; from then on, stretches that reach no farther than a share of
+# |d| count as their middles do.
+_PATIENCE, _IMPATIENT = 5_000, 1e-5
 
 
 @kernel
@@ -270,8 +275,16 @@ def _trim_stretch(
                 _, hit, _ = search(tree, arcs, x, y, radius - reach, 1, -1, -1.0, scratch)
                 if hit >= 0:
                     continue
-            base, number = 0, _gather(arclets, x, y, radius + reach, own, place, near, scratch)
-            top = number
+            most = near.shape[0] // 2
+            if _COARSE * reach > radius and size + 2 < stack.shape[0] and a < m < b:
+                most = _FEW
+            number = _gather(arclets, x, y, radius + reach, own, place, near, most, scratch)
+            if number < 0:
+                stack[size, 0], stack[size, 1], stack[size, 2] = m, b, -1.0
+                stack[size + 1, 0], stack[size + 1, 1], stack[size + 1, 2] = a, m, -1.0
+                size += 2
+                continue
+            base, top = 0, number
         else:
             top = base + number
         low, high, left, gone = _narrow(
@@ -280,7 +293,8 @@ def _trim_stretch(
         if gone:
             continue
         if left > 0:
-            small = reach <= trimming.shortest or looked > _PATIENCE or not a < m < b
+            small = reach <= trimming.shortest or not a < m < b
+            small = small or (looked > _PATIENCE and reach <= _IMPATIENT * radius)
             if not small and size + 2 < stack.shape[0] and top + left < near.shape[0]:
                 if 2 * left > number:
                     # few have gone: the halves share the list as it was, which costs no room
@@ -309,9 +323,13 @@ def _gather(
     own: tuple[int, int, int],
     place: Ints,
     near: Ints,
+    most: int,
     scratch: Scratch,
 ) -> int:
-    """List the arclets, but for the own chain, that may be nearer than ``farthest``; how many."""
+    """List the arclets, but for the own chain, that may be nearer than ``farthest``.
+
+    How many there are, or -1 if they are more than ``most``.
+    """
     tree, nodes = arclets.tree, scratch.nodes
     first, begin, length = own
     count = 0
@@ -334,6 +352,8 @@ def _gather(
             continue
         if place[lo, 1] == first and (place[lo, 0] - begin) % place[lo, 2] < length:
             continue
+        if count == most:
+            return -1
         near[count] = lo
         count += 1
     return count
@@ -388,12 +408,13 @@ def _narrow(
         )
         if gap + abs(slope) * length + 0.5 * max(over, 0.0) * length * length <= 0.0:
             return a, b, 0, True
-        lowest = gap - slack - abs(slope) * length + 0.5 * min(under, 0.0) * length * length
-        if under > 0.0 and abs(slope) < under * length:
-            lowest = gap - slack - 0.5 * slope * slope / under
+        steepest = abs(slope) + slack
+        lowest = gap - steepest * length + 0.5 * min(under, 0.0) * length * length
+        if under > 0.0 and steepest < under * length:
+            lowest = gap - 0.5 * steepest * steepest / under
         if lowest > 0.0:
             continue
-        if slack == 0.0 and abs(slope) > max(abs(under), abs(over)) * length:
+        if abs(slope) > slack + max(abs(under), abs(over)) * length:
             at_a = _gap_at(arclets, joints, trimming, element, j, a, scratch)
             at_b = _gap_at(arclets, joints, trimming, element, j, b, scratch)
             if at_a <= 0.0 and at_b <= 0.0:
@@ -443,7 +464,8 @@ def _second_range(
 
     With h the curvature of the distance's level sets, g its gradient, T and n tangent and left
     normal of the stretch, k its curvature: h (1 - (g.T)^2) + k (g.n). If h has no lower bound,
-    that of the distance to the foot alone, and by how much the arclet may be nearer than that.
+    that of the distance to any one point of the arclet, for which h >= 0, and by how much the
+    slope toward that may differ from g.T.
     """
     far, gx, gy, t = foot
     tx, ty, least, most = along
@@ -457,7 +479,7 @@ def _second_range(
     side_low, side_high = max(side - change, -1.0), min(side + change, 1.0)
     h_low, slack = _least_bend(row, foot, length), 0.0
     if h_low == -np.inf:
-        h_low, slack = 0.0, row[9]
+        h_low, slack = 0.0, row[9] / far
     # The distance to a set bends by no more than that to a point.
     over = square_high / (far - length)
     over += max(max(least * side_low, least * side_high), max(most * side_low, most * side_high))

@@ -20,9 +20,9 @@ _SHORTEST = 1e-3
 # Joints that turn by less (radians) are smooth. What that leaves open or doubled of the offset, as
 # much of the distance, lies along its tangent and does no harm. Larger: tangents jump; smaller:
 # rounding in tangents makes corners.
-_SMOOTH = 1e-7
+SMOOTH = 1e-7
 # Joints that turn by half a turn within this (radians) are tips whose side may be wrong.
-_CUSP = 1e-3
+CUSP = 1e-3
 # Room for stretches at first.
 _ROOM = 64
 
@@ -69,7 +69,7 @@ def _without_wrong_tips(shape: Shape, stretches: Stretches, distance: float) -> 
     """Without arcs around tips of slivers that rounding took for solid, or for hollow."""
     tips = np.flatnonzero(
         (stretches.elements[:, 1] == 1)
-        & (np.abs(shape.joints.turn[stretches.elements[:, 0]]) > np.pi - _CUSP)
+        & (np.abs(shape.joints.turn[stretches.elements[:, 0]]) > np.pi - CUSP)
     )
     if not len(tips):
         return stretches
@@ -94,5 +94,5 @@ def trimming(shape: Shape, distance: float, tolerance: float) -> Trimming:
     """What the kernels must know."""
     size = float(np.abs(shape.boundary.boxes[0]).max()) + abs(distance)
     return Trimming(
-        distance, shape.bends.rows, _SMOOTH, _GRAIN * size, max(_SHORTEST * tolerance, _GRAIN * size)
+        distance, shape.bends.rows, SMOOTH, _GRAIN * size, max(_SHORTEST * tolerance, _GRAIN * size)
     )
