@@ -68,6 +68,14 @@ class Joints(NamedTuple):
     turning: Floats  # (n,) how far each arclet itself turns, at least 0
 
 
+class Kinds(NamedTuple):
+    """What arclets are, see `splinesdf.curves.kinds`."""
+
+    kind: Ints  # (n,) FREE, STRAIGHT or ROUND
+    center: Floats  # (n, 2) of a round one
+    radius: Floats  # (n,) of a round one, positive if it bends to the left
+
+
 class Trimming(NamedTuple):
     """What is asked of an offset."""
 
@@ -76,6 +84,20 @@ class Trimming(NamedTuple):
     smooth: float  # a joint that turns by less (radians) is none
     grain: float  # what is not farther than the distance by more is nearer
     shortest: float  # a stretch that reaches no farther counts as its middle does
+
+
+class Runs(NamedTuple):
+    """Stretches of an offset between breaks, see `splinesdf.offsets.runs`."""
+
+    elements: Ints  # (n, 2) the arclet, and 1 for the arc around its end, else 0
+    spans: Floats  # (n, 2) parameters at start and end
+    start: Floats  # (n, 2) points
+    end: Floats  # (n, 2)
+    first: Ints  # (n_runs + 1,) run r has the stretches first[r]:first[r + 1]
+    kind: Ints  # (n_runs,) as in `Kinds`
+    center: Floats  # (n_runs, 2) of a round one
+    sweep: Floats  # (n_runs,) of a round one, positive to the left
+    closed: Bools  # (n_runs,) it is a whole loop without a corner
 
 
 class Cells(NamedTuple):

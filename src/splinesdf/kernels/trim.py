@@ -35,6 +35,9 @@ _OWN_TURN = 2.0
 # Halvings of an arclet to separate where its parallel runs forward from where it runs backward.
 # What is then undecided is 1/4096 of it next to a turning point, less than 1e-14 of the offset.
 _TURNING = 12
+# The parallel of an arclet is but a point, to rounding, if it is shorter by this factor, as that of
+# a circle at its own radius.
+_POINT = 1e-11
 # An arclet that may bend without limit, next to a cusp, is taken in so many equal parts.
 _CUSP_PARTS = 64
 # A stretch whose reach is not small against |d| is halved rather than compared with more than a few
@@ -104,7 +107,9 @@ def own_chains(
                 reach[first + p, backward] = count
                 if count > 0:
                     # what the first step of this chain was, the next one has behind it
-                    other = order[first + (p - 1) % size] if backward else order[first + (p + 1) % size]
+                    other = (
+                        order[first + (p - 1) % size] if backward else order[first + (p + 1) % size]
+                    )
                     angle = turn[other] if backward else turn[order[first + p]]
                     total -= abs(angle) + joints.turning[other]
                     count -= 1
@@ -202,6 +207,9 @@ def _forward(
     """The parts of a bent arclet where its parallel runs forward, in order; how many."""
     i = element[0]
     distance = trimming.distance
+    row = trimming.bends[i]
+    if 1.0 + max(row[0] * distance, row[1] * distance) <= _POINT:
+        return 0
     # Of 1 + kappa d with the parameter.
     change = abs(distance) * trimming.bends[i, 2] * trimming.bends[i, 9]
     count = 0
@@ -259,7 +267,12 @@ def _trim_stretch(
     size, looked = 1, 0
     while size > 0:
         size -= 1
-        a, b, base, number = stack[size, 0], stack[size, 1], int(stack[size, 2]), int(stack[size, 3])
+        a, b, base, number = (
+            stack[size, 0],
+            stack[size, 1],
+            int(stack[size, 2]),
+            int(stack[size, 3]),
+        )
         looked += 1
         m = 0.5 * (a + b)
         middle = parallel_point(arcs, joints, element, m, distance)
@@ -308,7 +321,9 @@ def _trim_stretch(
             if _is_near(arclets, x, y, radius - grain, scratch):
                 continue
         if compared:
-            total = _compare(arclets, joints, trimming, element, (low, high), scratch, found, since, total)
+            total = _compare(
+                arclets, joints, trimming, element, (low, high), scratch, found, since, total
+            )
         else:
             total = _append(element, (low, high), found, since, total)
     return total

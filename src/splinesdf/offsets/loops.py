@@ -43,9 +43,7 @@ class Loops(NamedTuple):
     first: Ints  # (n_loops + 1,) loop j has the rows first[j]:first[j + 1]
 
 
-def loops_of(
-    shape: Shape, stretches: Stretches, distance: float, tolerance: float
-) -> Loops | None:
+def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: float) -> Loops | None:
     """Join stretches to loops, or None if one end finds no start within the tolerance."""
     follows = _run_on(shape, stretches, distance)
     stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)

@@ -55,7 +55,9 @@ def trimmed(shape: Shape, distance: float, tolerance: float) -> Stretches:
     place = np.empty((count, 3), dtype=np.int64)
     sizes = np.diff(joints.loops)
     first = np.repeat(joints.loops[:-1], sizes)
-    place[joints.order] = np.column_stack([np.arange(count) - first, first, np.repeat(sizes, sizes)])
+    place[joints.order] = np.column_stack(
+        [np.arange(count) - first, first, np.repeat(sizes, sizes)]
+    )
     room = 2 * count + _ROOM
     while True:
         elements, spans = np.empty((room, 2), dtype=np.int64), np.empty((room, 2))
@@ -73,7 +75,9 @@ def _without_wrong_tips(shape: Shape, stretches: Stretches, distance: float) -> 
     )
     if not len(tips):
         return stretches
-    points = parallels(shape, stretches.elements[tips], stretches.spans[tips].mean(axis=1), distance)
+    points = parallels(
+        shape, stretches.elements[tips], stretches.spans[tips].mean(axis=1), distance
+    )
     there = signed_distance(shape, points[:, :2] + shape.boundary.origin)
     wrong = tips[np.sign(there) != np.sign(distance)]
     return Stretches(*(np.delete(rows, wrong, axis=0) for rows in stretches))
