@@ -28,8 +28,10 @@ _TURN = 1.9
 _QUARTER = 0.5 * math.pi + 1e-9
 # Points of the curve at which an arc is measured, at least this many, and on each element; and how
 # many times as many before it is taken.
-_POINTS, _POINTS_EACH, _MOST_POINTS = 12, 4, 1024
+_POINTS, _POINTS_EACH = 10, 3
 _FINER = 4
+# The longest step between them, as a share of the chord.
+_STRIDE = 0.15
 # Between those points the error may be this much larger.
 _SAFE = 0.9
 # Where a run bends by less than this (radians) from end to end it is straight: rounding decides
@@ -324,49 +326,127 @@ def _conic(
         return False, 0.0, 0.0, 0.0
     low, high = span
     each = int(math.ceil(high)) - int(low)
-    count = min(finer * max(_POINTS, _POINTS_EACH * each), _MOST_POINTS)
+    count = finer * max(_POINTS, _POINTS_EACH * each)
+    # Where a short arclet turns fast its parallel is long: steps are bounded along that, too.
+    chord = math.sqrt(cx * cx + cy * cy)
+    longest = _STRIDE * chord / finer
+    limit = _SAFE * tolerance
     if abs(turn) <= _FLAT:
-        length = math.hypot(cx, cy)
-        if length == 0.0 or abs(cx * uy - cy * ux) > _SAFE * tolerance:
+        if not (chord > 0.0 and abs(cx * uy - cy * ux) <= limit):
             return False, 0.0, 0.0, 0.0
-        for k in range(1, count):
-            point = _at(arclets, joints, runs, begin, low + (high - low) * k / count, distance)
-            if abs((point[0] - ax) * cy - (point[1] - ay) * cx) > _SAFE * tolerance * length:
+        place, x, y = low, ax, ay
+        while place < high:
+            place, x, y = _stride(
+                arclets,
+                joints,
+                runs,
+                begin,
+                (place, high),
+                (x, y),
+                (high - low) / count,
+                longest,
+                distance,
+            )
+            if abs((x - ax) * cy - (y - ay) * cx) > limit * chord:
                 return False, 0.0, 0.0, 0.0
         return True, 0.5 * (ax + bx), 0.5 * (ay + by), 1.0
     early, late = (cx * vy - cy * vx) / cross, (ux * cy - uy * cx) / cross
     if not (early > 0.0 and late > 0.0):
         return False, 0.0, 0.0, 0.0
     px, py = ax + early * ux, ay + early * uy
-    # Barycentric coordinates of q: with e = P1 - P0 and c = P2 - P0, q - P0 = b e + c c.
-    ex, ey = px - ax, py - ay
-    area = ex * cy - ey * cx
-    most = 0.0
-    square = 0.0
-    for k in range(1, count):
-        point = _at(arclets, joints, runs, begin, low + (high - low) * k / count, distance)
-        qx, qy = point[0] - ax, point[1] - ay
-        b = (qx * cy - qy * cx) / area
-        c = (ex * qy - ey * qx) / area
-        a = 1.0 - b - c
+    triangle = (ax, ay, px - ax, py - ay, cx, cy)
+    # The weight, by the point that is nearest to P1.
+    most = square = 0.0
+    place, x, y = low, ax, ay
+    while place < high:
+        place, x, y = _stride(
+            arclets,
+            joints,
+            runs,
+            begin,
+            (place, high),
+            (x, y),
+            (high - low) / count,
+            longest,
+            distance,
+        )
+        a, b, c = _barycentric(triangle, x, y)
         if b > most and a > 0.0 and c > 0.0:
             most = b
             square = b * b / (4.0 * a * c)
     if not square > 0.0:
         return False, 0.0, 0.0, 0.0
-    limit = _SAFE * tolerance
-    for k in range(1, count):
-        point = _at(arclets, joints, runs, begin, low + (high - low) * k / count, distance)
-        qx, qy = point[0] - ax, point[1] - ay
-        b = (qx * cy - qy * cx) / area
-        c = (ex * qy - ey * qx) / area
-        a = 1.0 - b - c
-        # gradients of b, c, a, times the area
-        bgx, bgy, cgx, cgy = cy, -cx, -ey, ex
-        agx, agy = -bgx - cgx, -bgy - cgy
-        gx = 2.0 * b * bgx - 4.0 * square * (c * agx + a * cgx)
-        gy = 2.0 * b * bgy - 4.0 * square * (c * agy + a * cgy)
-        value = abs(b * b - 4.0 * square * a * c) * abs(area)
-        if not value <= limit * math.hypot(gx, gy):
+    place, x, y = low, ax, ay
+    while place < high:
+        place, x, y = _stride(
+            arclets,
+            joints,
+            runs,
+            begin,
+            (place, high),
+            (x, y),
+            (high - low) / count,
+            longest,
+            distance,
+        )
+        if place < high and not _off(triangle, square, x, y) <= limit:
             return False, 0.0, 0.0, 0.0
     return True, px, py, math.sqrt(square)
+
+
+@kernel
+def _stride(
+    arclets: Arclets,
+    joints: Joints,
+    runs: Runs,
+    begin: int,
+    span: tuple[float, float],
+    point: tuple[float, float],
+    step: float,
+    longest: float,
+    distance: float,
+) -> tuple[float, float, float]:
+    """The next place at which a run is looked at, and its point."""
+    place, high = span
+    x, y = point
+    while True:
+        at = min(place + step, high)
+        if high - at < 0.01 * step:
+            at = high
+        row = _at(arclets, joints, runs, begin, at, distance)
+        if math.hypot(row[0] - x, row[1] - y) <= longest or place + 0.5 * step <= place:
+            return at, row[0], row[1]
+        step = 0.5 * step
+
+
+@kernel
+def _barycentric(
+    triangle: tuple[float, float, float, float, float, float], x: float, y: float
+) -> tuple[float, float, float]:
+    """The shares a, b, c of P0, P1, P2 in a point; a triangle is P0, P1 - P0, P2 - P0."""
+    ax, ay, ex, ey, cx, cy = triangle
+    area = ex * cy - ey * cx
+    qx, qy = x - ax, y - ay
+    b = (qx * cy - qy * cx) / area
+    c = (ex * qy - ey * qx) / area
+    return 1.0 - b - c, b, c
+
+
+@kernel
+def _off(
+    triangle: tuple[float, float, float, float, float, float], square: float, x: float, y: float
+) -> float:
+    """The distance of a point from a conic, by two steps of Newton's method toward it."""
+    _, _, ex, ey, cx, cy = triangle
+    area = ex * cy - ey * cx
+    result = 0.0
+    for _ in range(2):
+        a, b, c = _barycentric(triangle, x, y)
+        value = b * b - 4.0 * square * a * c
+        gx = (2.0 * b * cy - 4.0 * square * (c * (ey - cy) - a * ey)) / area
+        gy = (4.0 * square * (c * (ex - cx) - a * ex) - 2.0 * b * cx) / area
+        squared = gx * gx + gy * gy
+        x -= value * gx / squared
+        y -= value * gy / squared
+        result += abs(value) / math.sqrt(squared)
+    return result
