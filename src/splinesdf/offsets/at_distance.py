@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
@@ -11,6 +13,12 @@ from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops, loops_of
 from splinesdf.offsets.runs import runs_of
 from splinesdf.offsets.trimmed import Stretches, trimmed
+
+# Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
+# share of the tolerance and, if need be, to its powers.
+_CLOSER, _ROUNDS = 0.125, 5
+# Arcs nearer to one another than this share of the largest coordinate meet.
+_APART = 1e-12
 
 
 def contours_at(shape: Shape, distance: float, tolerance: float) -> list[Contour] | None:
@@ -34,16 +42,22 @@ def _contours(shape: Shape, loops: Loops, distance: float, tolerance: float) -> 
     if len(loops.first) < 2:
         return []
     runs, starts = runs_of(shape, loops, distance)
-    arcs, weights, owner = fitted(shape, runs, distance, np.full(len(runs.kind), tolerance))
+    allowed = np.full(len(runs.kind), tolerance)
+    for _ in range(_ROUNDS):
+        arcs, weights, owner = _fitted(shape, runs, distance, allowed)
+        cuts = np.searchsorted(owner, starts)
+        meeting = np.unique(owner[_meeting(arcs, weights, cuts)])
+        if not len(meeting):
+            break
+        allowed[meeting] *= _CLOSER
     arcs += shape.boundary.origin
-    cuts = np.searchsorted(owner, starts)
     return [
         Contour(arcs[a:b], weights[a:b], distance=distance, y_down=shape.y_down)
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True)
+        for a, b in pairwise(cuts)
     ]
 
 
-def fitted(
+def _fitted(
     shape: Shape, runs: Runs, distance: float, tolerance: Floats
 ) -> tuple[Floats, Floats, Ints]:
     """Arcs of all runs, relative to the boundary's origin, their weights, and their runs."""
@@ -58,4 +72,21 @@ def fitted(
         )
         if count <= room:
             return arcs[:count], weights[:count], owner[:count]
+        room = count
+
+
+def _meeting(arcs: Floats, weights: Floats, cuts: Ints) -> Ints:
+    """Arcs that meet another one elsewhere than at an end they share; loop j is cuts[j:j + 2]."""
+    from splinesdf.kernels.meetings import find_meetings  # Numba loads only when it is used
+
+    following = np.arange(1, len(arcs) + 1)
+    following[cuts[1:] - 1] = cuts[:-1]
+    order = np.argsort(arcs[:, :, 0].min(axis=1))
+    room = 64
+    while True:
+        pairs = np.empty((room, 2), dtype=np.int64)
+        apart = _APART * float(np.abs(arcs).max())
+        count = find_meetings(arcs, weights, following, order, apart, pairs)
+        if count <= room:
+            return pairs[:count].ravel()
         room = count
