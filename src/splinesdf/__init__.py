@@ -1,5 +1,6 @@
 """Closed curves to a compact C¹ piecewise-quadratic signed distance function."""
 
+from splinesdf.biarcs import as_arcs
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import (
@@ -36,6 +37,7 @@ __all__ = [
     "SplineSDF",
     "SplineSDFError",
     "ToleranceNotReached",
+    "as_arcs",
     "closest_point",
     "fit",
     "load",
