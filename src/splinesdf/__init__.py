@@ -21,6 +21,7 @@ from splinesdf.errors import (
 from splinesdf.fit import FitResult, fit
 from splinesdf.io.input import read
 from splinesdf.io.output import write
+from splinesdf.io.writers.options import Milling
 from splinesdf.offset import offset
 from splinesdf.spline import SplineSDF, load
 
@@ -30,6 +31,7 @@ __all__ = [
     "DistanceGrid",
     "FitResult",
     "InputError",
+    "Milling",
     "MissingExtraError",
     "OpenContourError",
     "Projection",

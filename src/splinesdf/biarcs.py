@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -136,7 +137,7 @@ def _runs(fixed: Bools, smooth: Bools) -> Iterator[tuple[int, int]]:
     """First and past-the-end piece of each stretch of fixed ones, and of others joined smoothly."""
     changes = (fixed[1:] != fixed[:-1]) | (~fixed[1:] & ~smooth[1:])
     bounds = [0, *(np.flatnonzero(changes) + 1).tolist(), len(fixed)]
-    yield from zip(bounds[:-1], bounds[1:], strict=True)
+    yield from pairwise(bounds)
 
 
 def _negligible(pieces: Floats, fixed: Bools, smooth: Bools, tolerance: float) -> Bools:
@@ -147,7 +148,7 @@ def _negligible(pieces: Floats, fixed: Bools, smooth: Bools, tolerance: float) -
     result = np.zeros(len(fixed), dtype=np.bool_)
     lengths = np.linalg.norm(pieces[:, 2] - pieces[:, 0], axis=1)
     for first, last in _runs(fixed, smooth):
-        inner = 0 < first and last < len(fixed)
+        inner = first > 0 and last < len(fixed)
         if fixed[first] and inner and smooth[first : last + 1].all():
             result[first:last] = lengths[first:last].sum() < tolerance
     return result

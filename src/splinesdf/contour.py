@@ -13,8 +13,8 @@ from splinesdf.errors import InputError
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
 # subdivision would go on splitting rounding noise.
 _ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
-# Arcs are even if their sag is at most this share of the chord (a turn of about 0.4 radians) and the
-# speeds along them differ by no more than about this factor; 16 Gauss points are then good to
+# Arcs are even if their sag is at most this share of the chord (a turn of about 0.4 radians) and
+# the speeds along them differ by no more than about this factor; 16 Gauss points are then good to
 # rounding. Larger: digits are lost. Smaller: only slower.
 _EVEN_SAG = 0.05
 _EVEN_SPEEDS = 2.0

@@ -1,10 +1,10 @@
-"""The fewest biarcs along a smooth run of conic arcs, found by going as far as each one can.
+r"""The fewest biarcs along a smooth run of conic arcs, found by going as far as each one can.
 
 A biarc is two circular arcs with a common tangent where they meet, between two points with given
 tangents:
 
         Q0 ---- J ---- Q1          |P0 Q0| = |Q0 J| = |J Q1| = |Q1 P2| = d
-       /                 \\         tangents along P0 Q0 and Q1 P2
+       /                 \         tangents along P0 Q0 and Q1 P2
      P0                   P2
 """
 
