@@ -23,3 +23,11 @@ def apart_from_line(points: np.ndarray, line: np.ndarray) -> np.ndarray:
 def dense(contour: Contour, count: int = 60) -> np.ndarray:
     """So many points on each arc."""
     return evaluate(contour.arcs, contour.weights, np.linspace(0.0, 1.0, count)).reshape(-1, 2)
+
+
+def compare(points: np.ndarray, chain: Contour, tolerance: float) -> None:
+    """A dense polyline with a chain, both ways."""
+    # What reading numbers of this size adds, and the chords of both.
+    slack = 0.02 * tolerance + 1e-15 * float(np.abs(chain.arcs).max())
+    assert apart(points, chain, 0.01 * tolerance).max() <= tolerance + slack
+    assert apart_from_line(dense(chain), points).max() <= tolerance + slack
