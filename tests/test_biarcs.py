@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import splinesdf as ss
 from splinesdf.conics import Kind, classify, elements
 from splinesdf.contour import Contour, halve
-from tests.chains import circle, ellipse, from_arc, mixed_chain, open_chain, slot, turned
+from tests.chains import circle, ellipse, from_arc, line, mixed_chain, open_chain, slot, turned
 from tests.nearness import apart, dense
 from tests.shapes import gamma
 
@@ -75,6 +75,21 @@ def test_what_is_made_of_arcs_comes_back_to_the_bit(contour: Contour) -> None:
     assert_allclose(result.arcs, contour.arcs, rtol=1e-15, atol=1e-15)
 
 
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_a_line_gives_its_tangent_to_the_curve_beside_it(first: int) -> None:
+    """Chains are smooth to a millionth only; what is made of them is to rounding."""
+    parabola = np.array([[[1.0, 0.0], [2.0, 1e-6], [2.5, 1.0]]])
+    closing = np.array([[[2.5, 1.0], [3.0, 2.0], [-3.0, 2.0]], [[-3.0, 2.0], [-2.0, 0.0], [0, 0]]])
+    straight = line(0j, 1 + 0j)
+    arcs = np.concatenate([straight.arcs, parabola, closing])
+    chain = from_arc(Contour(arcs, np.ones(4)), first)
+    result = check(chain, 1e-4)
+    # Beyond the two corners and what the line does not touch.
+    at_line = np.flatnonzero((result.arcs[:, 0] == [1.0, 0.0]).all(axis=1))
+    assert jumps(result)[at_line - 1].max() <= 1e-12
+    assert np.sort(jumps(result))[-3] <= 1e-12
+
+
 def test_lines_are_given_their_middle() -> None:
     arcs = np.array([[[0.0, 0.0], [0.1, 0.3], [1.0, 3.0]]])
     result = ss.as_arcs(Contour(arcs, np.array([7.0]), closed=False), tolerance=1e-3)
@@ -112,6 +127,7 @@ def test_offsets_take_few_arcs() -> None:
     assert max(jumps(result).max() for result in results) <= 1e-5
 
 
+@settings(max_examples=40)
 @given(
     weight=st.sampled_from([1e-3, 0.1, 0.9, 1.0, 3.0, 1e3]),
     x=st.floats(-3.0, 4.0),

@@ -213,7 +213,7 @@ def test_the_nearest_contour_is_next(tmp_path: Path) -> None:
     assert starts == [31 + 0j, 21 + 0j, 11 + 0j, 1 + 0j]
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(x=st.floats(-10.0, 10.0), y=st.floats(-10.0, 10.0), which=st.sampled_from("csm"))
 def test_a_contour_is_entered_at_its_nearest_point(x: float, y: float, which: str) -> None:
     chain = {

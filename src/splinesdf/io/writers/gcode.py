@@ -108,13 +108,12 @@ def _path(contour: Contour, tolerance: float, direction: str) -> _Path:
 
 def _ordered(paths: Sequence[_Path], here: complex, snap: float) -> Iterator[_Path]:
     """The paths, always the one next that is nearest to where the tool is then."""
-    left = [path for path in paths if path.pieces]
-    near = [_Near(path) for path in left]
-    while left:
-        found = [one.nearest(here) for one in near]
-        k = min(range(len(left)), key=lambda i: found[i][0])
-        path, (_, at, share) = left.pop(k), found[k]
-        length = near.pop(k).lengths[at]
+    paths = [path for path in paths if path.pieces]
+    near = _Near(paths)
+    for _ in paths:
+        row, share = near.nearest(here)
+        path, at, length = paths[near.path[row]], int(near.piece[row]), float(near.lengths[row])
+        near = near.without(int(near.path[row]))
         if path.closed:
             share = 0.0 if share * length < snap else share
             share = 1.0 if (1.0 - share) * length < snap else share
@@ -124,25 +123,33 @@ def _ordered(paths: Sequence[_Path], here: complex, snap: float) -> Iterator[_Pa
 
 
 class _Near:
-    """The pieces of a path as arrays, to be asked for the nearest point."""
+    """The pieces of paths as arrays, to be asked for the nearest point; of open ones the start."""
 
-    def __init__(self, path: _Path) -> None:
-        pieces = path.pieces if path.closed else []
-        self.first = path.pieces[0].start
-        self.start = np.array([p.start for p in pieces])
-        self.way = np.array([p.end for p in pieces]) - self.start
-        self.center = np.array([p.center for p in pieces])
-        self.sweep = np.array([p.sweep for p in pieces])
-        self.round = np.array([p.kind is Kind.CIRCLE for p in pieces], dtype=np.bool_)
-        radius = np.array([p.radius for p in pieces])
+    def __init__(self, paths: Sequence[_Path]) -> None:
+        rows = [
+            (i, k, piece, path.closed)
+            for i, path in enumerate(paths)
+            for k, piece in enumerate(path.pieces if path.closed else path.pieces[:1])
+        ]
+        self.path = np.array([i for i, *_ in rows])
+        self.piece = np.array([k for _, k, *_ in rows])
+        self.start = np.array([p.start for *_, p, _ in rows])
+        self.way = np.array([p.end - p.start if closed else 0j for *_, p, closed in rows])
+        self.center = np.array([p.center for *_, p, _ in rows])
+        self.sweep = np.array([p.sweep for *_, p, _ in rows])
+        self.round = np.array([p.kind is Kind.CIRCLE and closed for *_, p, closed in rows])
+        radius = np.array([p.radius for *_, p, _ in rows])
         self.lengths = np.where(self.round, radius * np.abs(self.sweep), np.abs(self.way))
-        if not path.closed:
-            self.lengths = np.zeros(1)
 
-    def nearest(self, here: complex) -> tuple[float, int, float]:
-        """How near a path is, and in which piece at which share of it; an open one's start."""
-        if not len(self.start):
-            return abs(here - self.first), 0, 0.0
+    def without(self, path: int) -> _Near:
+        """The same, all but one path's."""
+        result = object.__new__(_Near)
+        kept = self.path != path
+        vars(result).update({name: values[kept] for name, values in vars(self).items()})
+        return result
+
+    def nearest(self, here: complex) -> tuple[int, float]:
+        """In which row, at which share of the piece, the nearest point is."""
         squares = np.maximum(np.abs(self.way) ** 2, np.finfo(np.float64).tiny)
         share = ((here - self.start) * self.way.conjugate()).real / squares
         share = np.clip(share, 0.0, 1.0)
@@ -156,9 +163,8 @@ class _Near:
         angle = np.where(angle < -0.5 * gap, angle + 2.0 * np.pi, angle)
         share[on] = np.clip(angle / np.abs(turns), 0.0, 1.0)
         points[on] = self.center[on] + spokes * np.exp(1j * share[on] * turns)
-        apart = np.abs(points - here)
-        at = int(np.argmin(apart))
-        return float(apart[at]), at, float(share[at])
+        row = int(np.argmin(np.abs(points - here)))
+        return row, float(share[row])
 
 
 def _moves(path: _Path, decimals: int) -> Iterator[str]:
