@@ -35,7 +35,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 @shape_options
 @tolerance_option
 @click.option("-d", "--distance", "distances", type=float, multiple=True, help="> 0: outward.")
-@click.option("--step", type=float, help="Offsets at STEP, 2 STEP, ... until nothing is left.")
+@click.option("--step", type=float, help="Inward, < 0: at STEP, 2 STEP, ... until nothing is left.")
 @click.option("-o", "--output", required=True, help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv")
 @click.option("--arcs", is_flag=True, help="DXF, SVG: only lines and circular arcs.")
 @click.option(
@@ -109,9 +109,8 @@ def _contours(
         contours = offsets_of(source, distances, tolerance)
         listed = ", ".join(f"{d:g}" for d in distances)
     else:
-        asked: dict[str, Any] = {"step": step, "tolerance": tolerance}
         with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
-            contours = ss.offset(source, **asked)
+            contours = ss.offset(source, step=step, tolerance=tolerance)
         listed = f"{step:g}"
     if not contours:
         raise ss.InputError(f"nothing to write: no point of the plane is at {listed}")
