@@ -1,5 +1,6 @@
 """Closed curves to a compact C¹ piecewise-quadratic signed distance function."""
 
+from splinesdf.biarcs import as_arcs
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import (
@@ -20,6 +21,7 @@ from splinesdf.errors import (
 from splinesdf.fit import FitResult, fit
 from splinesdf.io.input import read
 from splinesdf.io.output import write
+from splinesdf.io.writers.options import Milling
 from splinesdf.offset import offset
 from splinesdf.spline import SplineSDF, load
 
@@ -29,6 +31,7 @@ __all__ = [
     "DistanceGrid",
     "FitResult",
     "InputError",
+    "Milling",
     "MissingExtraError",
     "OpenContourError",
     "Projection",
@@ -36,6 +39,7 @@ __all__ = [
     "SplineSDF",
     "SplineSDFError",
     "ToleranceNotReached",
+    "as_arcs",
     "closest_point",
     "fit",
     "load",

@@ -7,8 +7,6 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterable
-from contextlib import ExitStack
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +14,10 @@ import numpy as np
 
 import splinesdf as ss
 from splinesdf import report
-from splinesdf._atomic import check_target, write_text
+from splinesdf._atomic import write_text
 from splinesdf.distance import distance_and_gradient
 from splinesdf.fit import FitResult, fit_steps, require_reached
 from splinesdf.io.input import read_points
-from splinesdf.io.output import check_format
 from splinesdf.meshes import Quadtree
 from splinesdf.report import working
 
@@ -31,15 +28,20 @@ except ImportError:
     print('splinesdf: the command line needs: python -m pip install "splinesdf[cli]"')
     raise SystemExit(2) from None
 
-_BUILT_IN = {"part": "part.svg"} | {f"gamma{i}": f"gamma{i}.json" for i in (1, 2, 3)}
-# The tolerance, as a share of the shape's larger side, if none is given.
-_SHARE = 1e-3
+from splinesdf.cli_offset import offset
+from splinesdf.cli_shapes import (
+    check_outputs,
+    offsets_of,
+    read_shape,
+    shape_options,
+    tolerance_of,
+    tolerance_option,
+)
+
 # For the demo's part, in millimeters: near enough that every hole is still there at the first and
 # gone at the second, and a tolerance that a milling machine would ask for.
 _DEMO_DISTANCES = (-4.0, -2.0, 2.0, 4.0)
 _DEMO_TOLERANCE = 1e-3
-
-Command = Callable[..., None]
 
 
 def main() -> None:
@@ -81,27 +83,9 @@ def commands() -> None:
     """
 
 
-def _shape_options(command: Command) -> Command:
-    for option in (
-        click.option("--close", is_flag=True, help="Close open contours by a straight piece."),
-        click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule."),
-        click.argument("shape"),
-    ):
-        command = option(command)
-    return command
-
-
-def _tolerance_option(command: Command) -> Command:
-    return click.option(
-        "--tolerance",
-        type=float,
-        help="Largest error, in the shape's unit. Default: 1e-3 of its larger side.",
-    )(command)
-
-
 @commands.command()
-@_shape_options
-@_tolerance_option
+@shape_options
+@tolerance_option
 @click.option(
     "--band",
     "band",
@@ -133,8 +117,8 @@ def fit(
     **options: Any,
 ) -> None:
     """Fit a signed distance function to SHAPE within a tolerance."""
-    source = _read(shape, fill, close)
-    _check_outputs(shape, output, picture)
+    source = read_shape(shape, fill, close)
+    check_outputs(shape, output, picture)
     if output is not None and Path(output).suffix.lower() != ".npz":
         raise ss.InputError(f"expected a file name ending in .npz for a fit, got {output!r}")
     if picture is not None:
@@ -145,7 +129,7 @@ def fit(
         options["max_cells"] = max_cells
     options |= {"band": options["band"] or None, "certify": not no_proof}
     began = time.perf_counter()
-    result = _fit(source, _tolerance(source, tolerance), **options)
+    result = _fit(source, tolerance_of(source, tolerance), **options)
     seconds = time.perf_counter() - began
     if output is not None:
         result.spline.save(output)
@@ -159,33 +143,7 @@ def fit(
         report.print_written(output, picture)
 
 
-@commands.command()
-@_shape_options
-@_tolerance_option
-@click.option(
-    "-d", "--distance", "distances", type=float, multiple=True, required=True, help="> 0: outward."
-)
-@click.option("-o", "--output", required=True, help=".svg, .dxf, .geojson, .wkt or .csv.")
-def offset(
-    shape: str,
-    fill: str | None,
-    close: bool,
-    tolerance: float | None,
-    distances: tuple[float, ...],
-    output: str,
-) -> None:
-    """Write the trimmed offsets of SHAPE at distances from it."""
-    source = _read(shape, fill, close)
-    check_format(output)
-    _check_outputs(shape, output)
-    tolerance = _tolerance(source, tolerance)
-    contours = _offsets(source, distances, tolerance)
-    if not contours:
-        listed = ", ".join(f"{d:g}" for d in distances)
-        raise ss.InputError(f"nothing to write: no point of the plane is at {listed}")
-    ss.write(output, contours)
-    report.print_offsets(source, contours, distances, tolerance)
-    report.print_written(output)
+commands.add_command(offset)
 
 
 @commands.command()
@@ -204,14 +162,14 @@ def query(source: str, points: str, output: str | None, fill: str | None, close:
         spline = ss.load(source)
         ask: Callable[[Any], Any] = spline.value_and_gradient
     else:
-        shape = _read(source, fill, close)
+        shape = read_shape(source, fill, close)
 
         def ask(at: Any) -> Any:
             return distance_and_gradient(shape, at)
 
     at = read_points(points)
-    _check_outputs(source, output)
-    _check_outputs(points, output)
+    check_outputs(source, output)
+    check_outputs(points, output)
     with working("computing distances"):
         distance, gradient = ask(at)
     table = np.column_stack([at, distance, gradient])
@@ -273,7 +231,7 @@ def info(file: str, fill: str | None, close: bool) -> None:
             **report.provenance(spline.made),
         )
     else:
-        shape = _read(file, fill, close)
+        shape = read_shape(file, fill, close)
         report.print_pairs(
             shape=shape.name,
             loops=f"{shape.loop_count} ({shape.fill})",
@@ -287,18 +245,18 @@ def info(file: str, fill: str | None, close: bool) -> None:
 @click.option("-o", "--output", default="splinesdf-demo", show_default=True, help="The folder.")
 def demo(output: str) -> None:
     """Fit a mechanical part, draw it, save the fit, and write its offsets as SVG and DXF."""
-    source = _read("part", None, False)
+    source = read_shape("part", None, False)
     folder = Path(output)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise ss.InputError(f"cannot make the folder {output!r}: {error.strerror}") from error
     files = [str(folder / name) for name in ("part.npz", "offsets.svg", "offsets.dxf", "part.png")]
-    _check_outputs("part", *files)
+    check_outputs("part", *files)
     began = time.perf_counter()
-    result = _fit(source, _tolerance(source, None))
+    result = _fit(source, tolerance_of(source, None))
     seconds = time.perf_counter() - began
-    contours = _offsets(source, _DEMO_DISTANCES, _DEMO_TOLERANCE)
+    contours = offsets_of(source, _DEMO_DISTANCES, _DEMO_TOLERANCE)
     with working("writing files"):
         result.spline.save(files[0])
         ss.write(files[1], contours)
@@ -309,37 +267,6 @@ def demo(output: str) -> None:
     report.print_written(*files)
 
 
-def _read(text: str, fill: str | None, close: bool) -> ss.Shape:
-    """A shape from a file, or one that comes with the package; its notes go to stderr."""
-    with ExitStack() as stack:
-        path: Any = text
-        if text in _BUILT_IN and not Path(text).exists():
-            data = resources.files("splinesdf") / "data" / _BUILT_IN[text]
-            path = stack.enter_context(resources.as_file(data))
-        shape = ss.read(path, fill=fill, close=close)
-    for note in shape.notes:
-        click.echo(f"note: {note}", err=True)
-    return shape
-
-
-def _check_outputs(source: str, *outputs: str | None) -> None:
-    """Refuse, before the work, files that cannot be written or that are its source."""
-    for output in outputs:
-        if output is None:
-            continue
-        check_target(output)
-        if Path(output).exists() and Path(source).exists() and Path(output).samefile(source):
-            raise ss.InputError(f"{output!r} is the input, it would be lost: name another file")
-
-
-def _tolerance(shape: ss.Shape, tolerance: float | None) -> float:
-    if tolerance is not None:
-        return tolerance
-    tolerance = _SHARE * shape.size
-    click.echo(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given", err=True)
-    return tolerance
-
-
 def _fit(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:
     with working(f"fitting {shape.name} (the first run compiles)") as say:
         for result in fit_steps(shape, tolerance=tolerance, **options):
@@ -348,15 +275,6 @@ def _fit(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:
                 f"tolerance {tolerance:.2e}"
             )
     return require_reached(result)
-
-
-def _offsets(shape: ss.Shape, distances: Iterable[float], tolerance: float) -> list[ss.Contour]:
-    contours = []
-    with working("offsetting (the first run compiles)") as say:
-        for distance in distances:
-            say(f"offsetting {shape.name} by {distance:g}")
-            contours += ss.offset(shape, distance, tolerance=tolerance)
-    return contours
 
 
 def _picture(

@@ -13,11 +13,11 @@ from splinesdf.errors import InputError
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
 # subdivision would go on splitting rounding noise.
 _ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
-# Arcs are halved until their sag is this share of the chord (a turn of about 0.4 radians) and the
-# speeds along them differ by no more than about this factor; 16 Gauss points are then good to
+# Arcs are even if their sag is at most this share of the chord (a turn of about 0.4 radians) and
+# the speeds along them differ by no more than about this factor; 16 Gauss points are then good to
 # rounding. Larger: digits are lost. Smaller: only slower.
-_QUADRATURE_SAG = 0.05
-_QUADRATURE_SPEEDS = 2.0
+_EVEN_SAG = 0.05
+_EVEN_SPEEDS = 2.0
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
@@ -102,20 +102,7 @@ class Contour:
 
     def _quadrature(self) -> tuple[Floats, Floats, Floats]:
         """Points, velocities and steps of a Gauss rule over all arcs."""
-        arcs, weights = self.arcs, self.weights
-        negligible = _ROUNDING * np.abs(arcs).max()
-        # 60 halvings shrink any arc below rounding: a limit for cusps, which never flatten.
-        for _ in range(60):
-            early, late, chords = (
-                np.linalg.norm(arcs[:, j] - arcs[:, i], axis=1) for i, j in ((0, 1), (1, 2), (0, 2))
-            )
-            uneven = np.maximum(early, late) > _QUADRATURE_SPEEDS * np.minimum(early, late)
-            uneven |= (weights > _QUADRATURE_SPEEDS) | (weights < 1.0 / _QUADRATURE_SPEEDS)
-            curved = _sag(arcs, weights) > _QUADRATURE_SAG * chords
-            rough = (uneven | curved) & (early + late > negligible)
-            if not rough.any():
-                break
-            arcs, weights = halve(arcs, weights, rough)
+        arcs, weights = evened(self.arcs, self.weights)
         t = (_GAUSS_POINTS + 1.0)[:, None] / 2.0
         first, middle, last = (arcs[:, None, k] for k in range(3))
         w = weights[:, None, None]
@@ -158,6 +145,24 @@ def halve(arcs: Floats, weights: Floats, which: np.ndarray) -> tuple[Floats, Flo
     result[at + 1, 0], result[at + 1, 1] = shoulders[which], out_of[which]
     heavier[at] = heavier[at + 1] = np.sqrt(0.5 * (1.0 + weights[which]))
     return result, heavier
+
+
+def evened(arcs: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """The arcs, halved until each turns little and its speed is nearly even, down to rounding."""
+    negligible = _ROUNDING * np.abs(arcs).max()
+    # 60 halvings shrink any arc below rounding: a limit for cusps, which never flatten.
+    for _ in range(60):
+        early, late, chords = (
+            np.linalg.norm(arcs[:, j] - arcs[:, i], axis=1) for i, j in ((0, 1), (1, 2), (0, 2))
+        )
+        uneven = np.maximum(early, late) > _EVEN_SPEEDS * np.minimum(early, late)
+        uneven |= (weights > _EVEN_SPEEDS) | (weights < 1.0 / _EVEN_SPEEDS)
+        curved = _sag(arcs, weights) > _EVEN_SAG * chords
+        rough = (uneven | curved) & (early + late > negligible)
+        if not rough.any():
+            break
+        arcs, weights = halve(arcs, weights, rough)
+    return arcs, weights
 
 
 def box(contours: Iterable[Contour]) -> tuple[float, float, float, float]:

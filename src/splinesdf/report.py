@@ -12,6 +12,7 @@ from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import MissingExtraError
 from splinesdf.fit import FitResult
+from splinesdf.io.written import Worst
 from splinesdf.meshes import Box
 from splinesdf.offset import deviation
 from splinesdf.paper import Row
@@ -125,6 +126,19 @@ def print_offsets(
             f"{deviation(shape, here):.3g}" if here else "nothing is left",
         )
     _console().print(table)
+
+
+def print_check(path: str, worst: Worst, tolerance: float) -> None:
+    """What was found in a file that was read back."""
+    x, y = worst.point
+    print_pairs(
+        check=f"{path}, read back: {sum(worst.curves.values())} curves",
+        worst=f"{worst.deviation:.4g} from the distance {worst.distance:+g}",
+        at=f"({x!r}, {y!r}), as in the file",
+        verdict=f"within the tolerance {tolerance:.4g}"
+        if worst.deviation <= tolerance
+        else f"NOT within the tolerance {tolerance:.4g}",
+    )
 
 
 def print_tables(rows: Iterable[Row]) -> None:

@@ -12,6 +12,7 @@ from splinesdf._paths import as_path
 from splinesdf.contour import Contour, box, check_tolerance
 from splinesdf.errors import InputError
 from splinesdf.io.writers import WRITERS
+from splinesdf.io.writers.options import Milling, Options, check_options
 
 # The default tolerance as a share of the contours' size: far below what a machine cuts or a
 # screen shows, while a circle still takes only about 2000 chords.
@@ -19,31 +20,51 @@ _DEFAULT_TOLERANCE = 1e-6
 
 
 def write(
-    path: str | os.PathLike[str], contours: Iterable[Contour], *, tolerance: float | None = None
+    path: str | os.PathLike[str],
+    contours: Iterable[Contour],
+    *,
+    tolerance: float | None = None,
+    arcs: bool = False,
+    units: str | None = None,
+    milling: Milling | None = None,
 ) -> None:
     """Write contours to a file, whole or not at all.
 
     Parameters
     ----------
     path : str or path
-        ``.svg``, ``.dxf``, ``.geojson``, ``.wkt`` or ``.csv``. The first two keep the arcs: SVG
-        exactly but for hyperbolas, DXF exactly. The others hold polylines. SVG and DXF are
-        written upright, whichever way the source's y axis points; the others hold the
-        coordinates as they are.
+        ======================== ===========================================================
+        ``.dxf``                 exact: CIRCLE, LWPOLYLINE with bulges, LINE, ARC for contours of
+                                 lines and circular arcs, one rational SPLINE for any other
+        ``.svg``                 exact but for hyperbolas: L, A, Q; C for those
+        ``.nc .ngc .gcode``      G1, G2, G3: lines and circular arcs
+        ``.geojson .wkt``        polygons with holes, or lines where a contour is open
+        ``.csv``                 points
+        ======================== ===========================================================
+
+        DXF and G-code have y pointing up, SVG pointing down: contours are mirrored where the
+        source has it the other way. The others hold the coordinates as they are.
     contours : iterable of Contour
     tolerance : float, optional
-        How far a polyline, or the cubic that stands for a hyperbola in SVG, may be from the
-        contour. DXF needs none. Default: 1e-6 of the larger side of the contours' box.
+        How far the file may be from the contours, where it is not exact. Default: 1e-6 of the
+        larger side of the contours' box.
+    arcs : bool
+        DXF and SVG: only lines and circular arcs, as G-code always has (see `as_arcs`).
+    units : {"mm", "inch"}, optional
+        DXF and G-code: what the numbers are. They are never converted. Default: mm in G-code,
+        which needs one; none in DXF.
+    milling : Milling, optional
+        G-code: feed, heights, start and direction.
 
     Raises
     ------
     InputError
-        If the extension is unknown, there is nothing to write, the tolerance is not positive or
-        below rounding, or the file cannot be written.
+        If the extension is unknown, there is nothing to write, the format cannot use an option,
+        the tolerance is not positive or below rounding, or the file cannot be written.
     MissingExtraError
         For ``.dxf`` without ezdxf.
     """
-    suffix = check_format(path)
+    suffix = check_format(path, arcs=arcs, units=units, milling=milling)
     chains = _as_contours(contours)
     xmin, ymin, xmax, ymax = box(chains)
     size = max(xmax - xmin, ymax - ymin)
@@ -53,16 +74,24 @@ def write(
     if tolerance is None:
         tolerance = _DEFAULT_TOLERANCE * size
     check_tolerance(tolerance, every)
-    write_text(path, WRITERS[suffix](chains, tolerance))
+    options = Options(float(tolerance), bool(arcs), units, milling)
+    write_text(path, WRITERS[suffix](chains, options))
 
 
-def check_format(path: str | os.PathLike[str]) -> str:
-    """The extension, in lower case, or an `InputError` if no contours can be written to it."""
+def check_format(
+    path: str | os.PathLike[str],
+    *,
+    arcs: bool = False,
+    units: str | None = None,
+    milling: Milling | None = None,
+) -> str:
+    """The extension, in lower case, or an `InputError` if no such file can be written."""
     suffix = as_path(path).suffix.lower()
     if suffix not in WRITERS:
         raise InputError(
             f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"
         )
+    check_options(suffix, arcs=arcs, units=units, milling=milling)
     return suffix
 
 

@@ -1,26 +1,37 @@
-"""Contours as DXF: one rational SPLINE of degree 2 each, without loss."""
+"""Contours as DXF: polylines with bulges where they are exact, rational splines elsewhere."""
 
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from splinesdf.biarcs import as_arcs
+from splinesdf.conics import Element, Kind, elements
 from splinesdf.contour import Contour, box, mirrored
 from splinesdf.errors import MissingExtraError
+from splinesdf.io.writers.options import Options
 
 # Bits of a SPLINE's flags (group code 70).
 _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
+# $INSUNITS: none, as ezdxf's own default is meters.
+_UNITS = {None: 0, "inch": 1, "mm": 4}
 
 
-def dxf_text(contours: Sequence[Contour], tolerance: float) -> str:
-    """A drawing of SPLINE entities on one layer per distance, without a unit.
+def dxf_text(contours: Sequence[Contour], options: Options) -> str:
+    """A drawing with one entity for each contour, on one layer per distance.
 
-    Each arc is one Bézier segment: the inner knots are double, so the curve passes through the
-    arcs' ends. A closed contour is a clamped curve that ends where it starts. Contours of a
-    source whose y axis points down are mirrored back, or the part would be cut mirrored. The
-    tolerance is not needed.
+    What a machine cuts without loss comes as what its control knows: a full circle as CIRCLE, a
+    contour of lines and circular arcs as LWPOLYLINE with bulges, a single open one as LINE or
+    ARC. A contour with other conics is one rational SPLINE of degree 2, exactly: each arc is one
+    Bezier segment, the inner knots are double, so the curve passes through the arcs' ends. With
+    ``arcs`` such contours, too, are made of lines and circular arcs, within the tolerance.
+
+    Contours of a source whose y axis points down are mirrored back, or the part would be cut
+    mirrored.
     """
     try:
         from ezdxf.filemanagement import new
@@ -29,27 +40,18 @@ def dxf_text(contours: Sequence[Contour], tolerance: float) -> str:
             'writing DXF needs ezdxf: python -m pip install "splinesdf[dxf]"'
         ) from error
     document = new("R2010")
-    document.header["$INSUNITS"] = 0  # none: ezdxf's own default is meters
+    document.header["$INSUNITS"] = _UNITS[options.units]
+    document.header["$MEASUREMENT"] = 0 if options.units == "inch" else 1
     space = document.modelspace()
-    for contour in contours:
-        layer = f"distance_{float(contour.distance) + 0.0!r}"  # + 0.0 turns -0.0 into 0.0
+    upright = [mirrored(contour) if contour.y_down else contour for contour in contours]
+    for chain in upright:
+        layer = f"distance_{float(chain.distance) + 0.0!r}"  # + 0.0 turns -0.0 into 0.0
         if layer not in document.layers:
             document.layers.add(layer)
-        count = len(contour.arcs)
-        arcs = _upright(contour).arcs
-        control = np.concatenate([arcs[:, :2].reshape(-1, 2), arcs[-1:, 2]])
-        weights = np.ones(2 * count + 1)
-        weights[1::2] = contour.weights
-        spline = space.add_rational_spline(
-            control_points=[(x, y, 0.0) for x, y in control.tolist()],
-            weights=weights.tolist(),
-            degree=2,
-            knots=[0.0, *np.repeat(np.arange(count + 1.0), 2).tolist(), float(count)],
-            dxfattribs={"layer": layer},
-        )
-        spline.dxf.flags = _RATIONAL | _PLANAR | (_CLOSED if contour.closed else 0)
+        drawn = as_arcs(chain, tolerance=options.tolerance) if options.arcs else chain
+        _add(space, drawn, {"layer": layer})
     # So that a viewer opens on the drawing, not on the origin.
-    xmin, ymin, xmax, ymax = box([_upright(contour) for contour in contours])
+    xmin, ymin, xmax, ymax = box(upright)
     document.set_modelspace_vport(
         height=1.1 * max(xmax - xmin, ymax - ymin),
         center=(0.5 * (xmin + xmax), 0.5 * (ymin + ymax)),
@@ -59,6 +61,64 @@ def dxf_text(contours: Sequence[Contour], tolerance: float) -> str:
     return text.getvalue()
 
 
-def _upright(contour: Contour) -> Contour:
-    """The contour with y pointing up."""
-    return mirrored(contour) if contour.y_down else contour
+def _add(space: Any, contour: Contour, attributes: dict[str, str]) -> None:
+    """Add the contour to a layout."""
+    pieces = elements(contour)
+    if not pieces or any(piece.kind not in (Kind.LINE, Kind.CIRCLE) for piece in pieces):
+        _add_spline(space, contour, attributes)
+    elif pieces[0].is_full:
+        _add_circular(space, pieces[0], attributes)
+    elif len(pieces) > 1 or contour.closed:
+        _add_polyline(space, contour, pieces, attributes)
+    elif pieces[0].kind is Kind.LINE:
+        space.add_line(_xy(pieces[0].start), _xy(pieces[0].end), dxfattribs=attributes)
+    else:
+        _add_circular(space, pieces[0], attributes)
+
+
+def _add_circular(space: Any, piece: Element, attributes: dict[str, str]) -> None:
+    """CIRCLE, or ARC, which always turns counterclockwise."""
+    if piece.is_full:
+        space.add_circle(_xy(piece.center), piece.radius, dxfattribs=attributes)
+        return
+    angles = [
+        math.degrees(math.atan2(spoke.imag, spoke.real))
+        for spoke in (piece.start - piece.center, piece.end - piece.center)
+    ]
+    if piece.sweep < 0.0:
+        angles.reverse()
+    space.add_arc(_xy(piece.center), piece.radius, *angles, dxfattribs=attributes)
+
+
+def _add_polyline(
+    space: Any, contour: Contour, pieces: Sequence[Element], attributes: dict[str, str]
+) -> None:
+    """LWPOLYLINE; the bulge is the tangent of a quarter of the sweep, up to that of a half turn."""
+    vertices = []
+    for piece in pieces:
+        for part in piece.parts(math.pi):
+            bulge = math.tan(0.25 * part.sweep) if part.kind is Kind.CIRCLE else 0.0
+            vertices.append((*_xy(part.start), bulge))
+    if not contour.closed:
+        vertices.append((*_xy(pieces[-1].end), 0.0))
+    space.add_lwpolyline(vertices, format="xyb", close=contour.closed, dxfattribs=attributes)
+
+
+def _add_spline(space: Any, contour: Contour, attributes: dict[str, str]) -> None:
+    """SPLINE; a closed contour is a clamped curve that ends where it starts."""
+    count = len(contour.arcs)
+    control = np.concatenate([contour.arcs[:, :2].reshape(-1, 2), contour.arcs[-1:, 2]])
+    weights = np.ones(2 * count + 1)
+    weights[1::2] = contour.weights
+    spline = space.add_rational_spline(
+        control_points=[(x, y, 0.0) for x, y in control.tolist()],
+        weights=weights.tolist(),
+        degree=2,
+        knots=[0.0, *np.repeat(np.arange(count + 1.0), 2).tolist(), float(count)],
+        dxfattribs=attributes,
+    )
+    spline.dxf.flags = _RATIONAL | _PLANAR | (_CLOSED if contour.closed else 0)
+
+
+def _xy(point: complex) -> tuple[float, float]:
+    return point.real, point.imag

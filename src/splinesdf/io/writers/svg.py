@@ -8,11 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from splinesdf._arrays import Floats
+from splinesdf.biarcs import as_arcs
+from splinesdf.conics import Element, Kind, elements
 from splinesdf.contour import Contour, box, evaluate, halve, mirrored
+from splinesdf.io.writers.options import Options
 
-# Within this many ulp of the largest coordinate an arc counts as a line or a parabola: the
-# difference is what the coordinates' own rounding already makes.
-_ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
+# No circular arc sweeps more (radians): the center of a half turn is the root of a difference that
+# is all rounding, and half of the digits would be gone.
+_WIDEST = 2.0 * math.pi / 3.0
 # A reader works an ellipse's center out from its ends and radii, and loses digits if the arc is
 # a small part of it or just half of it. Beyond this, in chords, cubics say the same better.
 _ELLIPSE_ERROR = 1e-9
@@ -24,18 +27,19 @@ _MARGIN = 0.05
 _COLORS = {-1: "#1f77b4", 0: "#000000", 1: "#d62728"}  # inside, the shape, outside
 
 
-def svg_text(contours: Sequence[Contour], tolerance: float) -> str:
+def svg_text(contours: Sequence[Contour], options: Options) -> str:
     """A drawing with one group per distance and one path per contour.
 
     SVG's y axis points down: contours of a source whose y axis points up are mirrored, so that
     the picture is upright.
     """
     drawn = [contour if contour.y_down else mirrored(contour) for contour in contours]
+    if options.arcs:
+        drawn = [as_arcs(contour, tolerance=options.tolerance) for contour in drawn]
     xmin, ymin, xmax, ymax = box(drawn)
     size = max(xmax - xmin, ymax - ymin)
     margin = _MARGIN * size
     view = [xmin - margin, ymin - margin, xmax - xmin + 2 * margin, ymax - ymin + 2 * margin]
-    largest = max(float(np.abs(contour.arcs).max()) for contour in drawn)
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_numbers(view)}">',
         f'<g fill="none" stroke-width="{size / 400.0:.6g}" stroke-linejoin="round">',
@@ -44,7 +48,7 @@ def svg_text(contours: Sequence[Contour], tolerance: float) -> str:
         color = _COLORS[int(np.sign(distance))]
         lines.append(f'<g data-distance="{float(distance)!r}" stroke="{color}">')
         lines += [
-            f'<path d="{path_data(contour, tolerance, rounding=_ROUNDING * largest)}"/>'
+            f'<path d="{path_data(contour, options.tolerance)}"/>'
             for contour in drawn
             if contour.distance == distance
         ]
@@ -52,32 +56,44 @@ def svg_text(contours: Sequence[Contour], tolerance: float) -> str:
     return "\n".join([*lines, "</g>", "</svg>"]) + "\n"
 
 
-def path_data(contour: Contour, tolerance: float, *, rounding: float) -> str:
-    """SVG path data of one contour, coordinates as they are."""
-    parts = [f"M{_numbers(contour.arcs[0, 0])}"]
-    parts += [
-        _arc(arc, float(weight), tolerance, rounding)
-        for arc, weight in zip(contour.arcs, contour.weights, strict=True)
-    ]
+def path_data(contour: Contour, tolerance: float) -> str:
+    """SVG path data of one contour, coordinates as they are.
+
+    It starts where the contour does, unless that is in the middle of a line or a circular arc.
+    """
+    pieces = elements(contour)
+    if not pieces:
+        return f"M{_numbers(contour.arcs[0, 0])}"
+    parts = [f"M{_point(pieces[0].start)}"]
+    for piece in pieces:
+        if piece.kind is Kind.LINE:
+            parts.append(f"L{_point(piece.end)}")
+        elif piece.kind is Kind.CIRCLE:
+            parts += _circle(contour, piece, tolerance)
+        else:
+            parts.append(_conic(contour, piece, tolerance))
     return " ".join([*parts, "Z"] if contour.closed else parts)
 
 
-def _arc(arc: Floats, weight: float, tolerance: float, rounding: float) -> str:
-    """The command for one arc."""
-    first, middle, last = arc
-    chord = last - first
-    squared = float(chord @ chord)
-    along = float((middle - first) @ chord) / squared if squared > 0.0 else 0.0
-    nearest = first + min(max(along, 0.0), 1.0) * chord
-    if math.dist(middle, nearest) <= rounding:
-        return f"L{_numbers(last)}"
-    if abs(weight - 1.0) * math.dist(middle, 0.5 * (first + last)) <= rounding:
-        return f"Q{_numbers(middle)} {_numbers(last)}"
-    if weight < 1.0:
-        ellipse = _ellipse(arc, weight)
-        if ellipse is not None:
-            return ellipse
-    return _cubics(arc, weight, tolerance)
+def _conic(contour: Contour, piece: Element, tolerance: float) -> str:
+    """The command for an arc that is neither straight nor circular."""
+    arc, weight = contour.arcs[piece.first], float(contour.weights[piece.first])
+    if piece.kind is Kind.PARABOLA:
+        return f"Q{_numbers(arc[1])} {_numbers(arc[2])}"
+    ellipse = _ellipse(arc, weight) if piece.kind is Kind.ELLIPSE else None
+    return _cubics(arc, weight, tolerance) if ellipse is None else ellipse
+
+
+def _circle(contour: Contour, piece: Element, tolerance: float) -> list[str]:
+    """Commands for a circular arc, of which a reader finds the center again."""
+    if piece.radius > _LARGEST_RADIUS * abs(piece.end - piece.start) > 0.0:
+        rows = np.arange(piece.first, piece.first + piece.count) % len(contour.arcs)
+        return [_cubics(contour.arcs[i], float(contour.weights[i]), tolerance) for i in rows]
+    flag = int(piece.sweep > 0.0)
+    return [
+        f"A{_numbers([piece.radius, piece.radius])} 0 0 {flag} {_point(part.end)}"
+        for part in piece.parts(_WIDEST)
+    ]
 
 
 def _ellipse(arc: Floats, weight: float) -> str | None:
@@ -175,3 +191,7 @@ def _cubic_errors(arcs: Floats, weights: Floats) -> Floats:
 def _numbers(values: Sequence[float] | Floats) -> str:
     """Numbers with all their digits, the shortest that read back as the same."""
     return " ".join(repr(float(value)).removesuffix(".0") for value in values)
+
+
+def _point(point: complex) -> str:
+    return _numbers([point.real, point.imag])

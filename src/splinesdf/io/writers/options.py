@@ -1,0 +1,98 @@
+"""What the writers of formats are told beside the contours, and what each format has no use for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from splinesdf._arrays import positive
+from splinesdf.errors import InputError
+
+UNITS = ("mm", "inch")
+DIRECTIONS = ("climb", "conventional")
+
+
+@dataclass(frozen=True)
+class Milling:
+    """How a milling machine is to follow contours (G-code).
+
+    Attributes
+    ----------
+    feed : float, optional
+        Speed of cutting, in units per minute (F). Default: none, so the machine keeps the one
+        that is set; some refuse to cut before one is.
+    safe_height : float
+        The height (Z) of the ways between contours, above everything.
+    depth : float
+        How deep to cut below Z = 0. At 0, the default, the tool draws on the surface.
+    start : (float, float)
+        Where the tool comes from, in the file's coordinates: the next contour is always the
+        nearest one, entered at its nearest point.
+    direction : {"climb", "conventional"}
+        For a spindle that turns clockwise, seen from above. Climb: what stays is on the right of
+        the tool (G41's side), so an outer contour around a part is followed clockwise, a pocket's
+        counterclockwise. At a distance above 0, and at 0, the shape is what stays; below 0 it is
+        the shape that is cut away.
+    """
+
+    feed: float | None = None
+    safe_height: float = 5.0
+    depth: float = 0.0
+    start: tuple[float, float] = (0.0, 0.0)
+    direction: str = "climb"
+
+    def __post_init__(self) -> None:
+        if self.feed is not None:
+            positive(self.feed, "feed")
+        positive(self.safe_height, "safe height")
+        depth = _number(self.depth, "depth")
+        if depth < 0.0:
+            raise InputError(f"expected a depth below the surface, 0 or more, got {depth:g}")
+        if not isinstance(self.start, tuple | list | np.ndarray) or len(self.start) != 2:
+            raise InputError(f"expected two numbers for start, got {self.start!r}")
+        for value in self.start:
+            _number(value, "start")
+        if self.direction not in DIRECTIONS:
+            raise InputError(f"expected climb or conventional, got {self.direction!r}")
+
+
+@dataclass(frozen=True)
+class Options:
+    """All that `write` was told."""
+
+    tolerance: float
+    arcs: bool = False
+    units: str | None = None
+    milling: Milling | None = None
+
+
+def check_options(suffix: str, **given: Any) -> None:
+    """Refuse what a format cannot use: arcs, units, milling."""
+    for name, value in given.items():
+        if value and suffix not in _USE[name]:
+            raise InputError(
+                f"expected {name} only for {', '.join(sorted(_USE[name]))}, got it for {suffix}: "
+                "leave it out, or name another file"
+            )
+    units = given.get("units")
+    if units is not None and units not in UNITS:
+        raise InputError(f"expected mm or inch for units, got {units!r}")
+    milling = given.get("milling")
+    if milling is not None and not isinstance(milling, Milling):
+        raise InputError(f"expected a Milling for milling, got {type(milling).__name__}")
+
+
+GCODE = frozenset({".nc", ".ngc", ".gcode"})
+_USE = {"arcs": GCODE | {".dxf", ".svg"}, "units": GCODE | {".dxf"}, "milling": GCODE}
+
+
+def _number(value: float, name: str) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected a number for {name}, got {value!r}") from error
+    if not np.isfinite(number):
+        raise InputError(f"expected a finite {name}, got {number:g}")
+    return number
