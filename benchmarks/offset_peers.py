@@ -1,6 +1,7 @@
 """Trimmed offsets beside those of shapely, Clipper2 and CavalierContours, at equal error.
 
-Run from the repository's root; peers that are not installed are left out:
+Run from the repository's root; peers that are not installed are left out, but shapely is needed to
+measure:
 
     pip install shapely pyclipr cavaliercontours-python matplotlib fonttools
     python -m benchmarks.offset_peers [--shapes gamma2 part] [--tolerances 1e-4 1e-6 1e-8]
@@ -103,8 +104,8 @@ def _part() -> ss.Shape:
         return ss.read(file)
 
 
-# A shape and two distances, one a side. The limaçon's outer one and both of the glyph's and the
-# rose's are trimmed; the part's keep all its holes.
+# A shape and two distances, one a side. The ellipse's two and the inner ones of limaçon and keyhole
+# are whole, the others trimmed; no two loops of the part or the glyph meet.
 SHAPES: dict[str, tuple[Callable[[], ss.Shape | None], tuple[float, float]]] = {
     "gamma1": (lambda: _paper("gamma1"), (-0.1, 0.1)),
     "gamma2": (lambda: _paper("gamma2"), (-0.05, 0.15)),
