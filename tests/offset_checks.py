@@ -23,7 +23,7 @@ import shapely
 from scipy.spatial import cKDTree
 
 import splinesdf as ss
-from splinesdf.contour import Contour, evaluate
+from splinesdf.contour import Contour, evaluate, halve
 from tests import oracles
 from tests.offset_count import loop_counts
 from tests.offset_crossings import angle, meetings
@@ -198,8 +198,6 @@ def shortened(
     arcs: np.ndarray, weights: np.ndarray, longest: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """The same arcs, halved until none is longer: a long one may pass something small."""
-    from splinesdf.contour import halve
-
     while (long := np.hypot(*(arcs[:, 2] - arcs[:, 0]).T) > longest).any():
         arcs, weights = halve(arcs, weights, long)
     return arcs, weights
@@ -213,22 +211,26 @@ def gradients(shape: ss.Shape, points: np.ndarray) -> np.ndarray:
 
 
 def gradient_jumps(
-    shape: ss.Shape, start: np.ndarray, end: np.ndarray
+    shape: ss.Shape, ends: tuple[np.ndarray, np.ndarray], known: tuple[np.ndarray, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
     """By how much the gradient jumps at one place of each segment, and where: (n,), (n, 2).
 
     Halve the segment and keep the half along which the gradient turns more. Where it is
     continuous nothing is left of that; where the skeleton is crossed, the angle between the ways
-    to two closest points.
+    to two closest points. The gradients at the ends are given: on the skeleton, asking again may
+    give another.
     """
-    first, last = gradients(shape, start), gradients(shape, end)
-    for _ in range(40):
+    (start, end), (first, last) = ends, known
+    while True:
+        long = np.hypot(*(end - start).T) > 1e-12 * shape.size
+        if not long.any():
+            return angle(first, last), 0.5 * (start + end)
         middle = 0.5 * (start + end)
         there = gradients(shape, middle)
-        early = (np.abs(angle(first, there)) > np.abs(angle(there, last)))[:, None]
-        start, first = np.where(early, start, middle), np.where(early, first, there)
-        end, last = np.where(early, middle, end), np.where(early, there, last)
-    return angle(first, last), 0.5 * (start + end)
+        early = np.abs(angle(first, there)) > np.abs(angle(there, last))
+        to_end, to_start = (long & early)[:, None], (long & ~early)[:, None]
+        start, first = np.where(to_start, middle, start), np.where(to_start, there, first)
+        end, last = np.where(to_end, middle, end), np.where(to_end, there, last)
 
 
 def tangents(contour: Contour) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -284,7 +286,8 @@ def check_jumps(
             np.stack([normal[:, 1], -normal[:, 0]], -1) / np.linalg.norm(normal, axis=1)[:, None]
         )
         before, after = before - shift * normal, after - shift * normal
-    jump, _ = gradient_jumps(shape, before, after)
+    known = gradients(shape, before), gradients(shape, after)
+    jump, _ = gradient_jumps(shape, (before, after), known)
     same_way = (jump * turn > 0.0) | (np.abs(turn) > SPIKE)
     genuine = (np.abs(jump) > OF_JUMP * np.abs(turn)) & same_way
     for k in np.flatnonzero(~genuine):
@@ -303,13 +306,19 @@ def check_blunt(
     """Where the gradient jumps along a contour, there is a corner that turns as much."""
     if distance == 0.0:
         return
-    starts, ends = [], []
+    ends, known = [], []
     for contour in contours:
         points = evaluate(contour.arcs, contour.weights, SAMPLES[:-1]).reshape(-1, 2)
-        turn = np.abs(angle(gradients(shape, points), gradients(shape, np.roll(points, -1, 0))))
-        starts.append(points[turn > SUSPICIOUS])
-        ends.append(np.roll(points, -1, 0)[turn > SUSPICIOUS])
-    jump, place = gradient_jumps(shape, np.concatenate(starts), np.concatenate(ends))
+        there = gradients(shape, points)
+        pairs = np.stack([points, np.roll(points, -1, 0)], 1)
+        both = np.stack([there, np.roll(there, -1, 0)], 1)
+        turns = np.abs(angle(both[:, 0], both[:, 1])) > SUSPICIOUS
+        ends.append(pairs[turns])
+        known.append(both[turns])
+    start, end = np.moveaxis(np.concatenate(ends), 1, 0)
+    jump, place = gradient_jumps(
+        shape, (start, end), tuple(np.moveaxis(np.concatenate(known), 1, 0))
+    )
     real = np.abs(jump) > SUSPICIOUS
     jump, place = jump[real], place[real]
     tree = cKDTree(corners[0]) if len(corners[0]) else None
