@@ -32,6 +32,8 @@ AWKWARD: dict[str, tuple[float, ...]] = {
     "D-hole plate": (5.0,),
     "L bracket": (-6.0, 3.5),
 }
+# Parts with more than lines and circular arcs.
+SPLINES = frozenset({"cam", "involute gear", "star knob", "airfoil rib"})
 
 
 @cache
