@@ -2,45 +2,70 @@
 
 A cell whose center is farther from the level than its half diagonal has no part of it, as the
 distance changes by no more than the way. In a cell all of whose gradients lie in a cone, the
-distance grows along the cone's axis: the level passes simply, whatever its corners (in the sense
-of tangents). The others are halved: they hold places where gradients point all around, and only
-there loops are born, meet and die. Regions below and above the level, joined along cells' sides,
-and the loops between them form a tree: loops = regions - 1.
+distance grows along the cone's axis: the level passes simply, even if its tangent jumps. The
+others are halved: they hold places where gradients point all around, and only there loops are
+born, meet and die. Regions below and above the level, joined along cells' sides, and the loops
+between them form a tree: loops = regions - 1.
+
+The cone is no guess: what is closest to some point of a cell is no farther from its center than
+the closest to that, and a diagonal. All of the boundary so near, as polylines, must lie in it.
 """
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 import splinesdf as ss
+from tests import oracles
+from tests.offset_crossings import angle
 
 # The square's side in steps of the finest lattice, as a power of two: what is left unresolved is
 # 1e-9 of the size, and rounding of gradients is far less than a right angle still.
 LEVELS = 30
-# Cells that meet the level are at least this fine (share of the size), and a share of the
-# distance, down to the finest start. Coarser: features between the nine samples go unseen.
-COARSE, OF_DISTANCE, FINE = 1.0 / 700.0, 0.25, 1.0 / 6000.0
-# The cone's whole angle. Nearer pi: fewer cells at very sharp corners are left as hard, and the
-# samples' cone is less surely the cell's.
+# Cells are asked for cones when they are as fine as this share of the size, and of the distance.
+# Coarser: in vain, there is too much of the boundary near.
+COARSE, OF_DISTANCE = 1.0 / 700.0, 0.25
+# How far the polylines stay from the boundary, a share of the size: little beside a cell that has
+# a cone of the angle below and is not among the finest.
+DEVIATION = 3e-6
+# The cone's whole angle. Nearer pi: fewer cells at very sharp corners are left as hard.
 CONE = np.radians(160.0)
 # In the finest cells only this keeps a sharp corner from a place where gradients point all around.
 FINEST_CONE = np.radians(179.0)
 # Unresolved cells at which it gives up: a whole stretch of the skeleton lies on the level.
-MOST = 60_000
+MOST = 100_000
 
 # A cell's corners counterclockwise, then its sides' and its own middle, in half cells.
 NINE = np.array([(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)])
 
 
 def loop_counts(shape: ss.Shape, distance: float) -> list[int]:
-    """The number of loops of the level, or all that it may be where rounding decides, sorted."""
+    """The number of loops of the level, or all that it may be where rounding decides, sorted.
+
+    Counted on two lattices, and if they disagree on two finer ones: where the level runs to a
+    point narrower than cells, lattice points that belong together may be counted as two regions.
+    """
+    found = counted(shape, distance, 1.0), counted(shape, distance, 1.7)
+    if found[0] != found[1]:
+        found = counted(shape, distance, 3.1), counted(shape, distance, 5.3)
+    return sorted({*found[0], *found[1]})
+
+
+def counted(shape: ss.Shape, distance: float, fineness: float) -> list[int]:
+    """The number on one lattice, its cells by a factor finer than need be."""
     side, corner = square(shape, distance)
     unit = side / 2.0**LEVELS
-    target = np.clip(OF_DISTANCE * abs(distance) / shape.size, FINE, COARSE) * shape.size
+    target = COARSE * shape.size
+    if distance != 0.0:
+        target = min(target, OF_DISTANCE * abs(distance))
+    target /= fineness
+    side *= 1.0 + 0.01 * fineness  # so that no point is one of two lattices
     level = LEVELS - 6
     axis = np.arange(64) << level
     cells = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -54,7 +79,11 @@ def loop_counts(shape: ss.Shape, distance: float) -> list[int]:
         pure = np.abs(above[:, 8]) > np.sqrt(0.5) * size
         cone = in_cone(found, nodes)
         fine = size <= target
-        simple = pure | (fine & (cone < CONE) & ~alternates(above < 0.0))
+        hopeful = ~pure & fine & (cone < CONE) & ~alternates(above < 0.0)
+        if distance != 0.0:
+            middles = ss.Projection(*(part[hopeful, 8] for part in found))
+            hopeful[hopeful] = sure_cone(shape, nodes[hopeful, 8], middles, size) < CONE
+        simple = pure | hopeful
         last = level == 1 or (fine and np.sum(~simple) > MOST)
         if last:
             simple |= cone < FINEST_CONE
@@ -106,6 +135,44 @@ def in_cone(found: ss.Projection, nodes: np.ndarray) -> np.ndarray:
     gaps = np.diff(angles, axis=1, append=angles[:, :1] + 2.0 * np.pi)
     cone: np.ndarray = 2.0 * np.pi - gaps.max(axis=1)
     return cone  # NaN on the boundary: not less than anything
+
+
+@lru_cache(maxsize=4)
+def boundary_segments(shape: ss.Shape) -> tuple[np.ndarray, shapely.STRtree]:
+    """The filled region's boundary as short straight pieces (n, 2, 2), and a tree of them."""
+    rings = oracles.polylines(shape, DEVIATION * shape.size)
+    lines = oracles.filled_boundary(rings, shape.fill, snap=1e-13 * np.abs(shape.control).max())
+    segments = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
+    return segments, shapely.STRtree(shapely.linestrings(segments))
+
+
+def sure_cone(
+    shape: ss.Shape, middles: np.ndarray, found: ss.Projection, size: float
+) -> np.ndarray:
+    """A cone that has all gradients of cells in it, from all that may be closest there: (n,)."""
+    if len(middles) == 0:
+        return np.empty(0)
+    segments, tree = boundary_segments(shape)
+    half = np.sqrt(0.5) * size
+    reach = np.abs(found.distance) + 2.0 * half + 2.0 * DEVIATION * shape.size
+    cell, near = tree.query(shapely.points(middles), predicate="dwithin", distance=reach)
+    start = segments[near, 0] - middles[cell]
+    way = segments[near, 1] - segments[near, 0]
+    # The part of each piece within reach: where |start + t way| <= reach.
+    square = np.sum(way * way, axis=1)
+    nearest = -np.sum(start * way, axis=1) / square
+    off = start + nearest[:, None] * way
+    room = np.sqrt(np.maximum(reach[cell] ** 2 - np.sum(off * off, axis=1), 0.0) / square)
+    toward = (found.point - middles)[cell]
+    low, high = np.zeros(len(middles)), np.zeros(len(middles))
+    for t in (nearest - room, nearest + room):
+        end = start + np.clip(t, 0.0, 1.0)[:, None] * way
+        turn = angle(toward, end)
+        np.minimum.at(low, cell, turn)
+        np.maximum.at(high, cell, turn)
+    aside = np.arcsin(np.minimum(1.0, half / np.abs(found.distance)))
+    result: np.ndarray = high - low + 2.0 * aside
+    return result
 
 
 def alternates(below: np.ndarray) -> np.ndarray:
