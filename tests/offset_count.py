@@ -39,7 +39,7 @@ CONE = np.radians(160.0)
 # In the finest cells only this keeps a sharp corner from a place where gradients point all around.
 FINEST_CONE = np.radians(179.0)
 # Unresolved cells at which it gives up: a whole stretch of the skeleton lies on the level.
-MOST = 100_000
+MOST = 40_000
 
 # A cell's corners counterclockwise, then its sides' and its own middle, in half cells.
 NINE = np.array([(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)])
@@ -51,10 +51,10 @@ def loop_counts(shape: ss.Shape, distance: float) -> list[int]:
     Counted on two lattices, and if they disagree on two finer ones: where the level runs to a
     point narrower than cells, lattice points that belong together may be counted as two regions.
     """
-    found = counted(shape, distance, 1.0), counted(shape, distance, 1.7)
-    if found[0] != found[1]:
-        found = counted(shape, distance, 3.1), counted(shape, distance, 5.3)
-    return sorted({*found[0], *found[1]})
+    first = counted(shape, distance, 1.0)
+    if len(first) > 1 or counted(shape, distance, 1.7) == first:
+        return first
+    return sorted({*counted(shape, distance, 3.1), *counted(shape, distance, 5.3)})
 
 
 def counted(shape: ss.Shape, distance: float, fineness: float) -> list[int]:
