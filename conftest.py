@@ -29,13 +29,21 @@ pytest_collect_file = Sybil(
 ).pytest()
 
 
+# The kernel files that call others, and which.
+_CALLED = {
+    "enclosure": ("chains", "feet"),
+    "chains": ("feet",),
+    "trim": ("nearest", "parallels"),
+    "conic_fit": ("parallels",),
+}
+
+
 def _drop_stale_kernels() -> None:
     """Numba sees when a file changes, but not when one that it calls does (numba issue 1833)."""
     folder = Path(__file__).parent / "src" / "splinesdf" / "kernels"
-    parts = [folder / f"{name}.py" for name in ("chains", "feet")]
-    changed = max(part.stat().st_mtime for part in parts)
-    for name in ("enclosure", "chains"):
-        for compiled in folder.glob(f"__pycache__/{name}.*.nb?"):
+    for kernel, parts in _CALLED.items():
+        changed = max((folder / f"{name}.py").stat().st_mtime for name in parts)
+        for compiled in folder.glob(f"__pycache__/{kernel}.*.nb?"):
             if compiled.stat().st_mtime < changed:
                 compiled.unlink()
 

@@ -58,6 +58,48 @@ class Bends(NamedTuple):
     previous: Ints  # (n,) the arclet that leads to this one, -1 for none
 
 
+class Joints(NamedTuple):
+    """How the arclets of a boundary follow one another, see `splinesdf.curves.joints`."""
+
+    order: Ints  # (n,) arclets, loop after loop, each in its order
+    loops: Ints  # (n_loops + 1,) loop j has order[loops[j]:loops[j + 1]]
+    turn: Floats  # (n,) how far the curve turns to the left where each arclet ends, radians
+    tangents: Floats  # (n, 4) unit tangents at the start and at the end of each arclet
+    turning: Floats  # (n,) how far each arclet itself turns, at least 0
+
+
+class Kinds(NamedTuple):
+    """What arclets are, see `splinesdf.curves.kinds`."""
+
+    kind: Ints  # (n,) FREE, STRAIGHT or ROUND
+    center: Floats  # (n, 2) of a round one
+    radius: Floats  # (n,) of a round one, positive if it bends to the left
+
+
+class Trimming(NamedTuple):
+    """What is asked of an offset."""
+
+    distance: float  # positive to the right of the boundary, which is outward
+    bends: Floats  # rows of `Bends`
+    smooth: float  # a joint that turns by less (radians) is none
+    grain: float  # what is not farther than the distance by more is nearer
+    shortest: float  # a stretch that reaches no farther counts as its middle does
+
+
+class Runs(NamedTuple):
+    """Stretches of an offset between breaks, see `splinesdf.offsets.runs`."""
+
+    elements: Ints  # (n, 2) the arclet, and 1 for the arc around its end, else 0
+    spans: Floats  # (n, 2) parameters at start and end
+    start: Floats  # (n, 2) points
+    end: Floats  # (n, 2)
+    first: Ints  # (n_runs + 1,) run r has the stretches first[r]:first[r + 1]
+    kind: Ints  # (n_runs,) as in `Kinds`
+    center: Floats  # (n_runs, 2) of a round one
+    sweep: Floats  # (n_runs,) of a round one, positive to the left
+    closed: Bools  # (n_runs,) it is a whole loop without a corner
+
+
 class Cells(NamedTuple):
     """Points sorted into the 4^levels finest cells of a quadtree, and one for those outside it."""
 

@@ -1,27 +1,42 @@
-"""`offset`: trimmed offsets of a shape as conic arcs, to a tolerance.
+"""`offset`: trimmed offsets of a shape as few conic arcs, to a tolerance.
 
-for each distance: fit only where the distance is near it ─→ the level set of the fit
+for each distance: parallels of all arcs ─→ what nothing else is nearer to ─→ closed loops
+    ─→ lines and circles as they are, everything else by as few conics as the tolerance allows
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
+from dataclasses import replace
+from itertools import count
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import positive
+from splinesdf._arrays import Floats, positive
 from splinesdf.contour import Contour, evaluate
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.fit import fit
+from splinesdf.nesting import nested
+from splinesdf.offsets.at_distance import contours_at
 
 # Points an arc at which `deviation` measures: an arc's error has one or two bumps.
 _MEASURED = np.linspace(0.0, 1.0, 9)
+# Where parallels meet only to rounding, as where walls are just twice the distance apart, they do
+# not at a distance that differs by such a share of the tolerance. Larger: less is left for arcs.
+_SHIFTS = (0.0, 0.125, -0.125, 0.25, -0.25)
 
 
-def offset(shape: Shape, distances: ArrayLike, *, tolerance: float) -> list[Contour]:
+def offset(
+    shape: Shape,
+    distances: ArrayLike | None = None,
+    *,
+    tolerance: float,
+    step: float | None = None,
+) -> list[Contour]:
     """The curves at given distances from the boundary, already trimmed.
 
     Parameters
@@ -31,36 +46,72 @@ def offset(shape: Shape, distances: ArrayLike, *, tolerance: float) -> list[Cont
         Positive outward, negative inward, in the shape's unit; 0 is the boundary itself.
     tolerance : float
         How far the exact distance of a point of the result may be from the distance asked.
+    step : float, negative
+        Instead of distances: step, 2 step, 3 step, ... until nothing is left, as for pocketing.
 
     Returns
     -------
     list of Contour
-        In the order of the distances, each with its ``.distance``, closed, the side nearer to
-        the inside on its left. None for a distance at which nothing is left of the shape. Tangents
-        are continuous: a corner of the exact offset is rounded within the tolerance.
+        In the order of the distances, each with its ``.distance`` and ``.parent``, closed, the
+        side nearer to the inside on its left. None for a distance at which nothing is left.
+
+        Every point of it is as far from the boundary as asked, within the tolerance, and every
+        part of the exact offset wider than the tolerance is there. Where the boundary is straight
+        or a part of a circle, or has a corner, the offset is a line or a part of a circle, exact
+        to rounding; every other stretch is as few conic arcs as the tolerance allows. Tangents
+        are continuous but where those of the exact offset are not: at its corners, which are
+        exact, too.
 
     Raises
     ------
     ToleranceNotReached
-        If the tolerance needs more than a million cells.
+        If the tolerance needs more than a million cells, where a fit has to help out.
     InputError
 
     References
     ----------
-    [Wang2014] section 5: an offset's swallowed parts are not in a level set.
+    [Wang2014] section 5: an offset's swallowed parts are no part of a level set.
     """
+    asked = positive(tolerance, "tolerance")
+    if step is not None:
+        if distances is not None:
+            raise InputError("expected distances or a step, got both")
+        return _until_nothing_is_left(shape, step, asked)
     try:
         wanted = np.atleast_1d(np.asarray(distances, dtype=np.float64))
     except (TypeError, ValueError) as error:
         raise InputError(f"expected distances as numbers, got {distances!r}") from error
     if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
         raise InputError(f"expected one or more finite distances, got {distances!r}")
-    asked = positive(tolerance, "tolerance")
-    result = []
-    for distance in wanted.tolist():
-        fitted = fit(shape, tolerance=asked, band=(distance, distance))
-        result += fitted.spline.contours(distance)
-    return result
+    return [contour for d in wanted.tolist() for contour in _at(shape, d, asked)]
+
+
+def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[Contour]:
+    if not (isinstance(step, int | float | np.number) and math.isfinite(step) and step < 0.0):
+        raise InputError(
+            f"expected a negative step, inward, until nothing is left, got {step!r}: "
+            "outward there is no end, so give the distances"
+        )
+    result: list[Contour] = []
+    for number in count(1):
+        found = _at(shape, number * float(step), tolerance)
+        if not found:
+            return result
+        result += found
+    raise AssertionError("unreachable")
+
+
+def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
+    """The contours at one distance."""
+    for share in _SHIFTS:
+        moved = distance + math.copysign(share * tolerance, distance)
+        found = contours_at(shape, moved, (1.0 - abs(share)) * tolerance)
+        if found is not None:
+            return nested([replace(contour, distance=distance) for contour in found])
+    # A boundary that crosses itself within rounding has parallels with loose ends. A level set of
+    # a spline has none, whatever it is a fit of.
+    fitted = fit(shape, tolerance=tolerance, band=(distance, distance))
+    return fitted.spline.contours(distance)
 
 
 def deviation(shape: Shape, contours: Iterable[Contour]) -> float:

@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Floats, Ints, as_points
-from splinesdf._tables import Arclets, Bends
+from splinesdf._tables import Arclets, Bends, Joints, Kinds
 from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.bends import bends
 from splinesdf.curves.boundary import filled_boundary
 from splinesdf.curves.formula import parse_curve
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
+from splinesdf.curves.joints import joints
+from splinesdf.curves.kinds import kinds
 from splinesdf.curves.loops import closed_loops
 from splinesdf.curves.nurbs import nurbs_pieces
 from splinesdf.curves.svg_path import parse_path
@@ -293,6 +295,16 @@ class Shape:
     def bends(self) -> Bends:
         """How the arcs of the boundary bend, made on first use."""
         return bends(self.boundary)
+
+    @cached_property
+    def joints(self) -> Joints:
+        """How the arcs of the boundary follow one another, made on first use."""
+        return joints(self.boundary)
+
+    @cached_property
+    def kinds(self) -> Kinds:
+        """Which arcs of the boundary are straight or parts of circles, made on first use."""
+        return kinds(self.boundary)
 
     def piece(self, index: int) -> Floats:
         """Control points of one piece, shape (degree + 1, 2)."""

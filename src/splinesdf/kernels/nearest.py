@@ -68,7 +68,7 @@ def nearest(
         Filled. A point farther than ``feet.farthest`` from the curve gets infinity and arclet -1.
     """
     tree, arcs = arclets.tree, arclets.arcs
-    scratch = _scratch(arcs)
+    scratch = room_to_search(arcs)
     # Rounding in a distance next to the curve.
     grain = _GRAIN * np.abs(arclets.boxes[0]).max()
     limit = feet.farthest * _SLACK + grain
@@ -92,7 +92,7 @@ def nearest(
                 for j in range(count):
                     # nearest ones last, on top of the stack
                     scratch.nodes[j] = candidates.nodes[kept + count - 1 - j]
-                distance, found, t = _search(tree, arcs, px, py, best, count, own, ignored, scratch)
+                distance, found, t = search(tree, arcs, px, py, best, count, own, ignored, scratch)
                 if found >= 0 or best == limit:
                     break
                 best = limit  # rounding hid the minimum from the neighbor's bound
@@ -104,7 +104,7 @@ def nearest(
 
 
 @kernel
-def _scratch(arcs: Floats) -> Scratch:
+def room_to_search(arcs: Floats) -> Scratch:
     return Scratch(
         np.empty((_DEPTH + 2, (arcs.shape[1] - 8) // 4 + 1)),
         np.empty((_DEPTH + 2, 2)),
@@ -114,7 +114,7 @@ def _scratch(arcs: Floats) -> Scratch:
 
 
 @kernel
-def _search(
+def search(
     tree: Floats,
     arcs: Floats,
     px: float,
@@ -149,7 +149,7 @@ def _search(
                 if few > 1:
                     squared, t = _closest_on_line(arcs, i, px, py)
                 else:
-                    squared, t = _closest_on(arcs, i, px, py, smallest, scratch)
+                    squared, t = closest_on(arcs, i, px, py, smallest, scratch)
                 if i == own or squared <= ignored:
                     continue
                 if squared < smallest or (found < 0 and squared <= smallest):
@@ -216,7 +216,7 @@ def _closest_on_line(arcs: Floats, i: int, px: float, py: float) -> tuple[float,
 
 
 @kernel
-def _closest_on(
+def closest_on(
     arcs: Floats, i: int, px: float, py: float, best: float, scratch: Scratch
 ) -> tuple[float, float]:
     """Smallest squared distance to arclet i, where it beats ``best``, and its parameter."""

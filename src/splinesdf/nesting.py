@@ -1,0 +1,87 @@
+"""Which contour directly encloses which: crossings of rays with conic arcs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from splinesdf._arrays import Bools, Floats
+from splinesdf.contour import Contour
+
+
+def nested(contours: Sequence[Contour]) -> list[Contour]:
+    """The contours, each with the one that directly encloses it as its ``parent``.
+
+    Parameters
+    ----------
+    contours : sequence of Contour
+        Of one level, so that no two cross. Open ones enclose nothing, but may be enclosed.
+
+    Returns
+    -------
+    list of Contour
+        In the same order.
+    """
+    count = len(contours)
+    if count < 2:
+        return [replace(contour, parent=None) for contour in contours]
+    low = np.array([contour.arcs.min(axis=(0, 1)) for contour in contours])
+    high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
+    first = np.array([contour.arcs[0, 0] for contour in contours])
+    encloses = np.zeros((count, count), dtype=np.bool_)
+    for i, contour in enumerate(contours):
+        if contour.closed:
+            may = np.flatnonzero(np.all((low[i] <= first) & (first <= high[i]), axis=1))
+            may = may[may != i]
+            encloses[i, may] = enclosed(contour, first[may])
+    # The depth grows by one from a contour to those directly inside it.
+    depth = encloses.sum(axis=0)
+    result: list[Contour | None] = [None] * count
+    for j in np.argsort(depth, kind="stable").tolist():
+        around = np.flatnonzero(encloses[:, j])
+        parent = result[int(around[np.argmax(depth[around])])] if len(around) else None
+        result[j] = replace(contours[j], parent=parent)
+    return [contour for contour in result if contour is not None]
+
+
+def enclosed(contour: Contour, points: Floats) -> Bools:
+    """Whether each point lies inside a closed contour: (n, 2) -> (n,).
+
+    The exact crossings of the ray to the right are counted. Which arcs cross follows from the
+    signs at their ends, which neighbors share to the bit, so that none is counted twice.
+    """
+    result = np.zeros(len(points), dtype=np.bool_)
+    for k, point in enumerate(points):
+        result[k] = _crossings_to_the_right(contour.arcs - point, contour.weights) % 2 == 1
+    return result
+
+
+def _crossings_to_the_right(arcs: Floats, weights: Floats) -> int:
+    """How often arcs cross the positive x axis."""
+    # The numerator of y in Bernstein form: its roots are where an arc crosses the axis.
+    p, q, r = arcs[:, 0, 1], weights * arcs[:, 1, 1], arcs[:, 2, 1]
+    differ = (p < 0.0) != (r < 0.0)
+    # With both ends on one side there may be two crossings: a parabola through the axis.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(np.maximum(q * q - p * r, 0.0))
+        dips = ~differ & (q * q > p * r) & (np.where(p < 0.0, -q, q) < 0.0)
+        # t / (1 - t) = s with p + 2 q s + r s² = 0, in forms that do not cancel.
+        big = -(q + np.where(q < 0.0, -root, root))
+        first, second = p / big, big / r
+        total = 0
+        for s, one in ((first, differ & (first >= 0.0)), (second, differ & ~(first >= 0.0))):
+            total += _right_of_zero(arcs, weights, s, one)
+        for s in (first, second):
+            total += _right_of_zero(arcs, weights, s, dips)
+    return total
+
+
+def _right_of_zero(arcs: Floats, weights: Floats, s: Floats, which: Bools) -> int:
+    """How many of the chosen points, at t / (1 - t) = s, have a positive x."""
+    s = s[which]
+    x = arcs[which, 0, 0] + s * (2.0 * weights[which] * arcs[which, 1, 0] + s * arcs[which, 2, 0])
+    # For s beyond all bounds that is the end of the arc.
+    far = ~np.isfinite(x)
+    return int(np.count_nonzero(np.where(far, arcs[which, 2, 0], x) > 0.0))

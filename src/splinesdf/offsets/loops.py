@@ -1,0 +1,292 @@
+"""Stretches of parallels joined to closed loops: end to start, corner by corner.
+
+Where one stretch runs on into the next there is nothing to do. The other ends are those of the
+offset's own corners, each of which is also the start of another stretch, to rounding.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.curves.shape import Shape
+from splinesdf.distance import signed_distance
+from splinesdf.offsets.trimmed import CUSP, SMOOTH, Stretches, parallels
+
+# Steps of Newton's method from where trimming left two stretches to where they cross.
+_STEPS = 6
+# Ends and starts are matched in rounds, each with a radius so many times the one before, so that
+# near ones find each other first.
+_WIDER = 30.0
+# Where boundaries touch, stretches on the wrong side may be left that are shorter than the root of
+# rounding, as a share of the size.
+_SHORT = 1e-4
+# Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size.
+_SHALLOW = 1e-5
+# What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
+_MOVED = 1e-3
+# A loop that is smaller than this share of the tolerance is left out: it may be rounding.
+_LEAST = 1e-3
+
+
+class Loops(NamedTuple):
+    """Closed loops, one after the other; each row is a stretch or a bridge, in order."""
+
+    elements: Ints  # (n, 2) see `Stretches`; -1 for a bridge
+    spans: Floats  # (n, 2)
+    start: Floats  # (n, 2) points, relative to the boundary's origin; each is the one before's end
+    end: Floats  # (n, 2)
+    center: Floats  # (n, 2) of a bridge that is an arc, NaN for a straight one
+    smooth: Bools  # (n,) whether the tangent is continuous where the row ends
+    first: Ints  # (n_loops + 1,) loop j has the rows first[j]:first[j + 1]
+
+
+def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: float) -> Loops | None:
+    """Join stretches to loops, or None if one end finds no start within the tolerance."""
+    follows = _run_on(shape, stretches, distance)
+    stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)
+    if not len(follows):
+        return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)), tolerance)
+    spans = stretches.spans.copy()
+    points = np.stack([parallels(shape, stretches.elements, at, distance) for at in spans.T])
+    natural = follows >= 0
+    ends = np.flatnonzero(~natural)
+    led_to = np.zeros(len(follows), dtype=np.bool_)
+    led_to[follows[natural]] = True
+    starts = np.flatnonzero(~led_to)
+    farthest = max(tolerance, _SHALLOW * shape.size)
+    which = _matched(points[1, ends, :2], points[0, starts, :2], farthest)
+    if which is None:
+        return None
+    follows[ends] = starts[which]
+    _to_crossings(shape, stretches, spans, points, ends, follows[ends], distance)
+    bridges = _bridges(shape, points, ends, follows[ends], distance, tolerance)
+    if bridges is None:
+        return None
+    return _as_loops(Stretches(stretches.elements, spans), follows, points, bridges, tolerance)
+
+
+def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
+    """The stretch that each one runs on into, -1 where it ends in a corner: (n,)."""
+    elements, spans = stretches
+    arclet, corner = elements.T
+    boundary, joints = shape.boundary, shape.joints
+    turns = (corner == 0) & (joints.turn[arclet] * distance > SMOOTH * abs(distance))
+    # What comes next: the arc around the end, or the next arclet.
+    wanted = np.where(turns, 2 * arclet + 1, 2 * boundary.following[arclet])
+    opening = np.full(2 * len(boundary.start), -1)
+    fresh = np.flatnonzero(spans[:, 0] == 0.0)
+    opening[2 * arclet[fresh] + corner[fresh]] = fresh
+    return np.where(spans[:, 1] == 1.0, opening[wanted], -1)
+
+
+def _without_wrong_sides(
+    shape: Shape, stretches: Stretches, follows: Ints, distance: float
+) -> tuple[Stretches, Ints]:
+    """Without stretches on the wrong side, next to what is too thin for its sides to be told.
+
+    Such are slivers between the branches of a cusp, and short ones where boundaries touch.
+    """
+    right = np.ones(len(follows), dtype=np.bool_)
+    if (np.abs(shape.joints.turn) > np.pi - CUSP).any():
+        asked = np.arange(len(follows))
+    else:
+        alone = follows < 0
+        led_to = np.zeros(len(follows), dtype=np.bool_)
+        led_to[follows[~alone]] = True
+        asked = np.flatnonzero(alone | ~led_to)
+        first, last = (
+            parallels(shape, stretches.elements[asked], at, distance)[:, :2]
+            for at in stretches.spans[asked].T
+        )
+        asked = asked[np.hypot(*(last - first).T) < _SHORT * shape.size]
+    if len(asked):
+        middles = stretches.spans[asked].mean(axis=1)
+        points = parallels(shape, stretches.elements[asked], middles, distance)[:, :2]
+        there = signed_distance(shape, points + shape.boundary.origin)
+        right[asked] = np.sign(there) == np.sign(distance)
+    if right.all():
+        return stretches, follows
+    number = np.cumsum(right) - 1
+    kept = follows[right]
+    leads = (kept >= 0) & right[kept]
+    return (
+        Stretches(stretches.elements[right], stretches.spans[right]),
+        np.where(leads, number[kept], -1),
+    )
+
+
+def _matched(ends: Floats, starts: Floats, farthest: float) -> Ints | None:
+    """For each end the start next to it, each used once; None if there is none."""
+    if len(ends) != len(starts):
+        return None
+    result = np.full(len(ends), -1)
+    order = np.argsort(starts[:, 0])
+    x = starts[order, 0]
+    free = np.ones(len(starts), dtype=np.bool_)
+    radius = farthest * _WIDER**-6
+    while True:
+        left = np.flatnonzero(result < 0)
+        if not len(left):
+            return result
+        low = np.searchsorted(x, ends[left, 0] - radius)
+        count = np.searchsorted(x, ends[left, 0] + radius, side="right") - low
+        one = np.repeat(left, count)
+        offsets = np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
+        other = order[np.repeat(low, count) + offsets]
+        gap = np.hypot(*(ends[one] - starts[other]).T)
+        for pair in np.argsort(gap):
+            if gap[pair] > radius:
+                break
+            if free[other[pair]] and result[one[pair]] < 0:
+                result[one[pair]], free[other[pair]] = other[pair], False
+        if radius >= farthest:
+            return None if (result < 0).any() else result
+        radius = min(radius * _WIDER, farthest)
+
+
+def _to_crossings(
+    shape: Shape,
+    stretches: Stretches,
+    spans: Floats,
+    points: Floats,
+    one: Ints,
+    other: Ints,
+    distance: float,
+) -> None:
+    """Move the ends of some stretches and the starts of others to where both cross, if they do.
+
+    Fills ``spans`` and ``points``. Trimming leaves both ends at nearly the same point, each to
+    rounding over the sine of the angle between them.
+    """
+    a, b = spans[one, 1].copy(), spans[other, 0].copy()
+    at_a, at_b = points[1, one].copy(), points[0, other].copy()
+    gap = at_b[:, :2] - at_a[:, :2]
+    for _ in range(_STEPS):
+        va, vb = at_a[:, 2:4] * at_a[:, 4:5], at_b[:, 2:4] * at_b[:, 4:5]
+        cross = va[:, 0] * vb[:, 1] - va[:, 1] * vb[:, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step_a = (gap[:, 0] * vb[:, 1] - gap[:, 1] * vb[:, 0]) / cross
+            step_b = (gap[:, 0] * va[:, 1] - gap[:, 1] * va[:, 0]) / cross
+        new_a, new_b = a + step_a, b + step_b
+        usable = (new_a > spans[one, 0]) & (new_a <= 1.0)
+        usable &= (new_b < spans[other, 1]) & (new_b >= 0.0)
+        new_a, new_b = np.where(usable, new_a, a), np.where(usable, new_b, b)
+        new_at_a = parallels(shape, stretches.elements[one], new_a, distance)
+        new_at_b = parallels(shape, stretches.elements[other], new_b, distance)
+        new_gap = new_at_b[:, :2] - new_at_a[:, :2]
+        better = np.hypot(*new_gap.T) < np.hypot(*gap.T)
+        if not better.any():
+            break
+        a, b = np.where(better, new_a, a), np.where(better, new_b, b)
+        at_a = np.where(better[:, None], new_at_a, at_a)
+        at_b = np.where(better[:, None], new_at_b, at_b)
+        gap = np.where(better[:, None], new_gap, gap)
+    spans[one, 1], spans[other, 0] = a, b
+    points[1, one], points[0, other] = at_a, at_b
+
+
+def _bridges(
+    shape: Shape, points: Floats, one: Ints, other: Ints, distance: float, tolerance: float
+) -> Floats | None:
+    """Close what is still open: move both ends, or a bridge; None if that goes too far.
+
+    Returns
+    -------
+    ndarray, shape (k, 5)
+        After which stretch, the center of the arc or NaN, and whether it joins smoothly.
+    """
+    gap = np.hypot(*(points[0, other, :2] - points[1, one, :2]).T)
+    wide = gap > _MOVED * tolerance
+    if not wide.any():
+        return np.empty((0, 5))
+    one, other = one[wide], other[wide]
+    normals = np.stack([points[:, :, 3], -points[:, :, 2]], axis=-1)
+    feet = points[..., :2] - distance * normals
+    apart = np.hypot(*(feet[0, other] - feet[1, one]).T)
+    before, after = points[1, one, 2:4], points[0, other, 2:4]
+    turn = np.arctan2(
+        before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1)
+    )
+    # Both ends belong to one point of the shape: next to a corner too small for its tangents.
+    around = (apart <= _MOVED * tolerance) & (turn * distance > 0.0)
+    center = np.where(around[:, None], 0.5 * (feet[0, other] + feet[1, one]), np.nan)
+    middle = 0.5 * (points[1, one, :2] + points[0, other, :2])
+    bulge = middle - center
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bulge *= (abs(distance) / np.hypot(bulge[:, 0], bulge[:, 1]))[:, None]
+    middle = np.where(around[:, None], center + bulge, middle)
+    exact = signed_distance(shape, middle + shape.boundary.origin)
+    if not (np.abs(exact - distance) <= 0.5 * tolerance).all():
+        return None
+    return np.column_stack([one, center, around, np.zeros(len(one))])
+
+
+def _as_loops(
+    stretches: Stretches, follows: Ints, points: Floats, bridges: Floats, tolerance: float
+) -> Loops:
+    """Rows in the order of the loops, joints made equal to the bit."""
+    count = len(follows)
+    start, end = points[0, :, :2].copy(), points[1, :, :2].copy()
+    # A smooth end is one that runs on: its tangent is that of the next stretch.
+    before, after = points[1, :, 2:4], points[0, follows, 2:4]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    smooth = (np.abs(cross) <= SMOOTH) & (np.sum(before * after, axis=1) > 0.0)
+    bridged = bridges[:, 0].astype(np.int64)
+    joined = np.ones(count, dtype=np.bool_)
+    joined[bridged] = False
+    shared = 0.5 * (end + start[follows])
+    end = np.where(joined[:, None], shared, end)
+    start[follows[joined]] = shared[joined]
+    elements, spans, center = stretches.elements, stretches.spans, np.full((count, 2), np.nan)
+    if len(bridged):
+        arcs = bridges[:, 3] > 0.0
+        following = follows[bridged]
+        elements = np.concatenate([elements, np.full((len(bridged), 2), -1)])
+        spans = np.concatenate([spans, np.tile([0.0, 1.0], (len(bridged), 1))])
+        start = np.concatenate([start, end[bridged]])
+        end = np.concatenate([end, start[following]])
+        center = np.concatenate([center, bridges[:, 1:3]])
+        smooth[bridged] = arcs
+        smooth = np.concatenate([smooth, arcs])
+        follows = np.concatenate([follows, following])
+        follows[bridged] = count + np.arange(len(bridged))
+    order, first = _cycles(follows)
+    loops = Loops(
+        elements[order], spans[order], start[order], end[order], center[order], smooth[order], first
+    )
+    return _without_specks(loops, _LEAST * tolerance)
+
+
+def _cycles(follows: Ints) -> tuple[Ints, Ints]:
+    """The rows cycle after cycle, and where each cycle starts."""
+    order, first = [], [0]
+    after = follows.tolist()
+    seen = [False] * len(after)
+    for row in range(len(after)):
+        at = row
+        while not seen[at]:
+            seen[at] = True
+            order.append(at)
+            at = after[at]
+        if len(order) > first[-1]:
+            first.append(len(order))
+    return np.array(order, dtype=np.int64), np.array(first, dtype=np.int64)
+
+
+def _without_specks(loops: Loops, least: float) -> Loops:
+    """Without loops that are smaller than ``least`` both ways."""
+    if len(loops.first) < 2:
+        return loops
+    low = np.minimum.reduceat(loops.start, loops.first[:-1])
+    high = np.maximum.reduceat(loops.start, loops.first[:-1])
+    sizes = np.diff(loops.first)
+    # A loop of one or two rows has no extent between its joints, and is none of the smallest.
+    kept = ((high - low).max(axis=1) > least) | (sizes < 3)
+    if kept.all():
+        return loops
+    rows = np.repeat(kept, sizes)
+    first = np.concatenate([[0], np.cumsum(sizes[kept])])
+    return Loops(*(column[rows] for column in loops[:-1]), first)

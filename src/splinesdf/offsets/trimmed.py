@@ -1,0 +1,102 @@
+"""What is left of the parallel curves at a distance, see `splinesdf.kernels.trim`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from splinesdf._arrays import Floats, Ints
+from splinesdf._tables import Trimming
+from splinesdf.curves.shape import Shape
+from splinesdf.distance import signed_distance
+
+# Rounding in a distance, as a multiple of the largest number around: what is not farther than the
+# distance by more counts as nearer, so that walls just twice the distance apart leave nothing
+# between them. Smaller: rounding decides where; larger: what is nearly that close is lost.
+_GRAIN = 64 * 2.220446049250313e-16
+# Stretches shorter than this share of the tolerance are judged by their middles.
+_SHORTEST = 1e-3
+# Joints that turn by less (radians) are smooth. What that leaves open or doubled of the offset, as
+# much of the distance, lies along its tangent and does no harm. Larger: tangents jump; smaller:
+# rounding in tangents makes corners.
+SMOOTH = 1e-7
+# Joints that turn by half a turn within this (radians) are tips whose side may be wrong.
+CUSP = 1e-3
+# Room for stretches at first.
+_ROOM = 64
+
+
+class Stretches(NamedTuple):
+    """Parts of parallels that are the offset, in order along each loop of the shape."""
+
+    elements: Ints  # (n, 2) the arclet, and 1 for the arc around its end, else 0
+    spans: Floats  # (n, 2) the parameters at start and end
+
+
+def trimmed(shape: Shape, distance: float, tolerance: float) -> Stretches:
+    """The stretches of all parallels at a distance that nothing is nearer to.
+
+    Parameters
+    ----------
+    shape : Shape
+    distance : float
+        Not 0.
+    tolerance : float
+        Stretches far shorter than it may be missing.
+    """
+    from splinesdf.kernels.trim import own_chains, trim  # Numba loads only when it is used
+
+    boundary, joints = shape.boundary, shape.joints
+    request = trimming(shape, distance, tolerance)
+    count = len(boundary.start)
+    bent, reach = np.empty(count, dtype=np.bool_), np.empty((count, 3), dtype=np.int64)
+    own_chains(boundary, joints, request, bent, reach)
+    place = np.empty((count, 3), dtype=np.int64)
+    sizes = np.diff(joints.loops)
+    first = np.repeat(joints.loops[:-1], sizes)
+    place[joints.order] = np.column_stack(
+        [np.arange(count) - first, first, np.repeat(sizes, sizes)]
+    )
+    room = 2 * count + _ROOM
+    while True:
+        elements, spans = np.empty((room, 2), dtype=np.int64), np.empty((room, 2))
+        found = trim(boundary, joints, request, bent, reach, place, elements, spans)
+        if found <= room:
+            return _without_wrong_tips(shape, Stretches(elements[:found], spans[:found]), distance)
+        room = found
+
+
+def _without_wrong_tips(shape: Shape, stretches: Stretches, distance: float) -> Stretches:
+    """Without arcs around tips of slivers that rounding took for solid, or for hollow."""
+    tips = np.flatnonzero(
+        (stretches.elements[:, 1] == 1)
+        & (np.abs(shape.joints.turn[stretches.elements[:, 0]]) > np.pi - CUSP)
+    )
+    if not len(tips):
+        return stretches
+    points = parallels(
+        shape, stretches.elements[tips], stretches.spans[tips].mean(axis=1), distance
+    )
+    there = signed_distance(shape, points[:, :2] + shape.boundary.origin)
+    wrong = tips[np.sign(there) != np.sign(distance)]
+    return Stretches(*(np.delete(rows, wrong, axis=0) for rows in stretches))
+
+
+def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
+    """Point, tangent of the shape, speed and curvature of parallels, (n, 6)."""
+    from splinesdf.kernels.parallels import parallel_points  # Numba loads only when it is used
+
+    rows = np.empty((len(at), 6))
+    parallel_points(
+        shape.boundary, shape.joints, elements, np.ascontiguousarray(at), distance, rows
+    )
+    return rows
+
+
+def trimming(shape: Shape, distance: float, tolerance: float) -> Trimming:
+    """What the kernels must know."""
+    size = float(np.abs(shape.boundary.boxes[0]).max()) + abs(distance)
+    return Trimming(
+        distance, shape.bends.rows, SMOOTH, _GRAIN * size, max(_SHORTEST * tolerance, _GRAIN * size)
+    )
