@@ -41,6 +41,7 @@ SMOOTH = 1e-6
 OF_JUMP = 0.5
 # How far from a corner, in tolerances over the sine of half its turn, the exact one is looked for:
 # that is where lines meet that are a tolerance off. Farther: others' corners are taken for it.
+# First it is looked for right there: far off, a blunt corner is lost in the turn of curves.
 REACH = 4.0
 # Gradients that turn by this (radians) between two samples may jump there. It must be more than
 # smooth arcs turn in a sample, pi / 32, and misses corners that are blunter.
@@ -141,7 +142,7 @@ def check_side(
 def check_parents(verdict: Verdict, contours: Sequence[Contour], tolerance: float) -> None:
     """The smallest polygon around most of a loop's joints is its parent; signs alternate."""
     fine = max(0.01 * tolerance, 1e-9 * extent(contours))
-    polygons = [shapely.Polygon(contour.points(fine)) for contour in contours]
+    polygons = [shapely.Polygon(outline(contour, fine)) for contour in contours]
     areas = np.array([polygon.area for polygon in polygons])
     for polygon in polygons:
         shapely.prepare(polygon)
@@ -154,6 +155,13 @@ def check_parents(verdict: Verdict, contours: Sequence[Contour], tolerance: floa
             verdict.fail("parent", f"loop {number} of {len(contours)} at depth {len(around)}")
         if (contour.area > 0.0) != (len(around) % 2 == 0):
             verdict.fail("side", f"loop {number} has area {contour.area:.3g} at {len(around)}")
+
+
+def outline(contour: Contour, fine: float) -> np.ndarray:
+    points = contour.points(fine)
+    if len(points) < 4:  # no polygon for GEOS
+        points = evaluate(contour.arcs, contour.weights, SAMPLES).reshape(-1, 2)
+    return points
 
 
 def extent(contours: Sequence[Contour]) -> float:
@@ -275,24 +283,40 @@ def check_jumps(
         return place, turn
     for k in np.flatnonzero((turn * distance > 0.0) & (np.abs(turn) < SPIKE)):
         verdict.fail("jump", f"a corner of the wrong kind, {turn[k]:.2e}, at {place[k]}")
-    way = REACH * tolerance / np.sin(0.5 * np.abs(turn))
-    way = np.clip(way, 1e-9 * shape.size, 0.05 * shape.size)[:, None]
-    before, after = place - way * np.concatenate(into), place + way * np.concatenate(out_of)
-    if distance == 0.0:
-        # On the boundary: the gradient is asked for beside it, on the side where it jumps.
-        shift = np.where(turn > 0.0, 1.0, -1.0)[:, None] * way
-        normal = np.concatenate(into) + np.concatenate(out_of)
-        normal = (
-            np.stack([normal[:, 1], -normal[:, 0]], -1) / np.linalg.norm(normal, axis=1)[:, None]
-        )
-        before, after = before - shift * normal, after - shift * normal
-    known = gradients(shape, before), gradients(shape, after)
-    jump, _ = gradient_jumps(shape, (before, after), known)
+    directions = np.concatenate(into), np.concatenate(out_of)
+    jump = np.zeros(len(turn))
+    sine = np.sin(0.5 * np.abs(turn))
+    for reach in (0.0, 0.1 * tolerance, tolerance, REACH * tolerance):
+        way = np.clip(reach / sine, 1e-8 * shape.size, 0.05 * shape.size)
+        found = gradient_jump_at(shape, place, turn, directions, way[:, None], distance == 0.0)
+        closer = np.abs(found - turn) < np.abs(jump - turn)
+        jump = np.where(closer, found, jump)
     same_way = (jump * turn > 0.0) | (np.abs(turn) > SPIKE)
     genuine = (np.abs(jump) > OF_JUMP * np.abs(turn)) & same_way
     for k in np.flatnonzero(~genuine):
         verdict.fail("jump", f"turns by {turn[k]:.2e}, the gradient by {jump[k]:.2e}, {place[k]}")
     return place, turn
+
+
+def gradient_jump_at(
+    shape: ss.Shape,
+    place: np.ndarray,
+    turn: np.ndarray,
+    directions: tuple[np.ndarray, np.ndarray],
+    way: np.ndarray,
+    on_boundary: bool,
+) -> np.ndarray:
+    """By how much the gradient jumps somewhere between two points a way before and after: (n,)."""
+    before, after = place - way * directions[0], place + way * directions[1]
+    if on_boundary:
+        # There is no gradient: it is asked for beside it, on the side where it jumps.
+        normal = directions[0] + directions[1]
+        normal = np.stack([normal[:, 1], -normal[:, 0]], -1)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        shift = np.where(turn > 0.0, 1.0, -1.0)[:, None] * way * normal
+        before, after = before - shift, after - shift
+    known = gradients(shape, before), gradients(shape, after)
+    return gradient_jumps(shape, (before, after), known)[0]
 
 
 def check_blunt(
