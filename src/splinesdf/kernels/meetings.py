@@ -19,7 +19,12 @@ _DEPTH = 128
 
 @kernel
 def find_meetings(
-    arcs: Floats, weights: Floats, following: Ints, order: Ints, apart: float, pairs: Ints
+    arcs: Floats,
+    weights: Floats,
+    following: Ints,
+    order: Ints,
+    apart: tuple[float, float],
+    pairs: Ints,
 ) -> int:
     """Fill the pairs of arcs that come nearer to each other than about a distance.
 
@@ -31,9 +36,9 @@ def find_meetings(
         The arc that starts where each one ends.
     order : ndarray, shape (n,)
         The arcs in the order of the smallest x of their control points.
-    apart : float
-        Parts of arcs smaller than this are not halved any more, and next to an end that two arcs
-        share, parts this near to it are passed over.
+    apart : tuple of float
+        Parts of arcs smaller than the first are not halved any more; parts that are both nearer
+        than the second to an end that the arcs share are passed over.
     pairs : ndarray, shape (room, 2)
         Filled.
 
@@ -72,7 +77,7 @@ def _meet(
     weights: Floats,
     pair: tuple[int, int],
     following: Ints,
-    apart: float,
+    apart: tuple[float, float],
     stack: Floats,
 ) -> bool:
     i, j = pair
@@ -99,11 +104,11 @@ def _meet(
         passed = False
         for k in range(count):
             x, y = shared[k, 0], shared[k, 1]
-            if _farthest(a, x, y) < apart and _farthest(b, x, y) < apart:
+            if _farthest(a, x, y) < apart[1] and _farthest(b, x, y) < apart[1]:
                 passed = True
         if passed:
             continue
-        if max(extent_a, extent_b) < apart or size + 2 > stack.shape[0]:
+        if max(extent_a, extent_b) < apart[0] or size + 2 > stack.shape[0]:
             return True
         which = 0 if extent_a >= extent_b else 1
         # the pair as it was stays below its halves

@@ -17,8 +17,9 @@ from splinesdf.offsets.trimmed import Stretches, trimmed
 # Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
 # share of the tolerance and, if need be, to its powers.
 _CLOSER, _ROUNDS = 0.125, 5
-# Arcs nearer to one another than this share of the largest coordinate meet.
-_APART = 1e-12
+# Arcs nearer to one another than this share of the largest coordinate meet; but arcs that leave a
+# corner side by side are no farther apart, for rounding, up to the second one from it.
+_APART, _FROM_CORNER = 1e-12, 1e-7
 
 
 def contours_at(shape: Shape, distance: float, tolerance: float) -> list[Contour] | None:
@@ -85,7 +86,8 @@ def _meeting(arcs: Floats, weights: Floats, cuts: Ints) -> Ints:
     room = 64
     while True:
         pairs = np.empty((room, 2), dtype=np.int64)
-        apart = _APART * float(np.abs(arcs).max())
+        largest = float(np.abs(arcs).max())
+        apart = (_APART * largest, _FROM_CORNER * largest)
         count = find_meetings(arcs, weights, following, order, apart, pairs)
         if count <= room:
             return pairs[:count].ravel()

@@ -28,7 +28,7 @@ _SHALLOW = 1e-5
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
 _MOVED = 1e-3
 # A loop that is smaller than this share of the tolerance is left out: it may be rounding.
-_LEAST = 1e-3
+_LEAST = 0.1
 
 
 class Loops(NamedTuple):
@@ -79,7 +79,9 @@ def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
     opening = np.full(2 * len(boundary.start), -1)
     fresh = np.flatnonzero(spans[:, 0] == 0.0)
     opening[2 * arclet[fresh] + corner[fresh]] = fresh
-    return np.where(spans[:, 1] == 1.0, opening[wanted], -1)
+    # In a corner toward the offset the parallels cross, even if too near to their ends for trimming.
+    cross = (corner == 0) & (joints.turn[arclet] * distance < -SMOOTH * abs(distance))
+    return np.where((spans[:, 1] == 1.0) & ~cross, opening[wanted], -1)
 
 
 def _without_wrong_sides(
