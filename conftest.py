@@ -33,8 +33,10 @@ pytest_collect_file = Sybil(
 _CALLED = {
     "enclosure": ("chains", "feet"),
     "chains": ("feet",),
-    "trim": ("nearest", "parallels"),
-    "conic_fit": ("parallels",),
+    "gaps": ("nearest", "parallels"),
+    "trim": ("gaps", "nearest", "parallels"),
+    "conic_arc": ("parallels",),
+    "conic_fit": ("conic_arc", "parallels"),
 }
 
 

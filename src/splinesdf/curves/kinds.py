@@ -1,8 +1,8 @@
 """Which arclets are straight and which are parts of circles, to rounding, whatever they came from.
 
-An arc of an SVG path, a NURBS circle and a formula of cosines are all polynomial pieces by now; what
-they describe is told by their points. It holds for whole pieces: a short enough part of any curve
-is straight, to rounding.
+An arc of an SVG path, a NURBS circle and a formula of cosines are all polynomial pieces by now;
+what they describe is told by their points. It holds for whole pieces: a short enough part of any
+curve is straight, to rounding.
 """
 
 from __future__ import annotations

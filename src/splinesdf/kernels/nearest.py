@@ -105,6 +105,7 @@ def nearest(
 
 @kernel
 def room_to_search(arcs: Floats) -> Scratch:
+    """What a search needs, to be used again and again."""
     return Scratch(
         np.empty((_DEPTH + 2, (arcs.shape[1] - 8) // 4 + 1)),
         np.empty((_DEPTH + 2, 2)),

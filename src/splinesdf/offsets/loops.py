@@ -79,7 +79,7 @@ def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
     opening = np.full(2 * len(boundary.start), -1)
     fresh = np.flatnonzero(spans[:, 0] == 0.0)
     opening[2 * arclet[fresh] + corner[fresh]] = fresh
-    # In a corner toward the offset the parallels cross, even if too near to their ends for trimming.
+    # In a corner toward the offset the parallels cross, be it too near to their ends for trimming.
     cross = (corner == 0) & (joints.turn[arclet] * distance < -SMOOTH * abs(distance))
     return np.where((spans[:, 1] == 1.0) & ~cross, opening[wanted], -1)
 
@@ -291,4 +291,12 @@ def _without_specks(loops: Loops, least: float) -> Loops:
         return loops
     rows = np.repeat(kept, sizes)
     first = np.concatenate([[0], np.cumsum(sizes[kept])])
-    return Loops(*(column[rows] for column in loops[:-1]), first)
+    return Loops(
+        loops.elements[rows],
+        loops.spans[rows],
+        loops.start[rows],
+        loops.end[rows],
+        loops.center[rows],
+        loops.smooth[rows],
+        first,
+    )

@@ -67,7 +67,7 @@ def runs_of(shape: Shape, loops: Loops, distance: float) -> tuple[Runs, Ints]:
             first,
             kind[first[:-1]],
             mean,
-            np.bincount(members, sweep),
+            np.bincount(members, sweep).astype(np.float64),
             closed,
         ),
         starts,

@@ -45,7 +45,8 @@ def trimmed(shape: Shape, distance: float, tolerance: float) -> Stretches:
     tolerance : float
         Stretches far shorter than it may be missing.
     """
-    from splinesdf.kernels.trim import own_chains, trim  # Numba loads only when it is used
+    from splinesdf.kernels.own_chains import own_chains  # Numba loads only when it is used
+    from splinesdf.kernels.trim import trim
 
     boundary, joints = shape.boundary, shape.joints
     request = trimming(shape, distance, tolerance)
@@ -80,7 +81,9 @@ def _without_wrong_tips(shape: Shape, stretches: Stretches, distance: float) -> 
     )
     there = signed_distance(shape, points[:, :2] + shape.boundary.origin)
     wrong = tips[np.sign(there) != np.sign(distance)]
-    return Stretches(*(np.delete(rows, wrong, axis=0) for rows in stretches))
+    return Stretches(
+        np.delete(stretches.elements, wrong, axis=0), np.delete(stretches.spans, wrong, axis=0)
+    )
 
 
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:

@@ -1,0 +1,242 @@
+"""How the distance to an arclet changes along a stretch of a parallel, against the offset's own.
+
+The gap, that distance less |d|, has a known value and slope in the middle of the stretch, and its
+second derivative has a known range, from those of both curvatures. That proves the gap positive,
+or not, or monotone: then it passes zero once, and where is found by iteration.
+
+Used by `trim`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from splinesdf._arrays import Floats, Ints
+from splinesdf._jit import kernel
+from splinesdf._tables import Arclets, Joints, Scratch, Trimming
+from splinesdf.kernels.nearest import closest_on
+from splinesdf.kernels.parallels import parallel_point
+
+# A point this share of its distance beside the end of an arclet, or more, stays on that side where
+# the second derivative of its distance is bounded, as it moves by less than half of its distance.
+_BESIDE = 0.7
+# Steps to where the offset is left. Bisection alone would need 53; the secants need about 8.
+_STEPS = 80
+
+
+@kernel
+def narrow(
+    arclets: Arclets,
+    joints: Joints,
+    trimming: Trimming,
+    stretch: tuple[tuple[int, int], float, float, float],
+    listed: tuple[int, int, int],
+    near: Ints,
+    scratch: Scratch,
+) -> tuple[float, float, int, bool]:
+    """Cut off what some arclet is surely nearer to; list those of which nothing is proved.
+
+    Returns
+    -------
+    low, high : float
+        What is left of the stretch as far as is known.
+    left : int
+        How many arclets are not done with; they stand in ``near`` from ``listed[2]`` on.
+    gone : bool
+        Nothing is left.
+    """
+    element, a, b, reach = stretch
+    base, number, top = listed
+    arcs = arclets.arcs
+    distance = trimming.distance
+    radius, grain = abs(distance), trimming.grain
+    m = 0.5 * (a + b)
+    x, y, tx, ty, _, bend = parallel_point(arcs, joints, element, m, distance)
+    low, high = a, b
+    left = 0
+    # A stretch that turns by at most half a turn is at most this much longer than its chords.
+    length = 1.12 * reach
+    least, most = _bend_range(trimming, element, bend, b - a)
+    for k in range(number):
+        j = near[base + k]
+        squared, t = closest_on(arcs, j, x, y, (radius + reach) ** 2, scratch)
+        far = math.sqrt(squared)
+        if not far < radius + reach:
+            continue
+        if far + reach <= radius:
+            return a, b, 0, True
+        px, py = _point_of(arcs, j, t)
+        gx, gy = (x - px) / far, (y - py) / far
+        gap, slope = far - radius - grain, gx * tx + gy * ty
+        under, over, slack = _second_range(
+            trimming.bends[j], (far, gx, gy, t), (tx, ty, least, most), length
+        )
+        if gap + abs(slope) * length + 0.5 * max(over, 0.0) * length * length <= 0.0:
+            return a, b, 0, True
+        steepest = abs(slope) + slack
+        lowest = gap - steepest * length + 0.5 * min(under, 0.0) * length * length
+        if under > 0.0 and steepest < under * length:
+            lowest = gap - 0.5 * steepest * steepest / under
+        if lowest > 0.0:
+            continue
+        if abs(slope) > slack + max(abs(under), abs(over)) * length:
+            at_a = _gap_at(arclets, joints, trimming, element, j, a, scratch)
+            at_b = _gap_at(arclets, joints, trimming, element, j, b, scratch)
+            if at_a <= 0.0 and at_b <= 0.0:
+                return a, b, 0, True
+            if at_a < 0.0 < at_b:
+                low = max(low, _passes(arclets, joints, trimming, element, j, (a, b), scratch))
+                continue
+            if at_b < 0.0 < at_a:
+                high = min(high, _passes(arclets, joints, trimming, element, j, (b, a), scratch))
+                continue
+            if at_a > 0.0 and at_b > 0.0:
+                continue
+        near[top + left] = j
+        left += 1
+    return low, high, left, not low < high
+
+
+@kernel
+def _bend_range(
+    trimming: Trimming, element: tuple[int, int], bend: float, width: float
+) -> tuple[float, float]:
+    """The range of the curvature of a stretch, of which that in the middle is ``bend``.
+
+    It increases with the curvature kappa of the arclet: kappa / (1 + kappa d).
+    """
+    i, corner = element
+    if corner:
+        return bend, bend
+    low, high, d = trimming.bends[i, 0], trimming.bends[i, 1], trimming.distance
+    middle = bend / (1.0 - bend * d)
+    change = 0.5 * width * trimming.bends[i, 9] * trimming.bends[i, 2]
+    if change < np.inf and middle == middle:
+        low, high = max(low, middle - change), min(high, middle + change)
+    if 1.0 + low * d > 0.0 and 1.0 + high * d > 0.0:
+        return low / (1.0 + low * d), high / (1.0 + high * d)
+    return -np.inf, np.inf
+
+
+@kernel
+def _second_range(
+    row: Floats,
+    foot: tuple[float, float, float, float],
+    along: tuple[float, float, float, float],
+    length: float,
+) -> tuple[float, float, float]:
+    """The range of the second derivative of the distance to an arclet along a stretch.
+
+    With h the curvature of the distance's level sets, g its gradient, T and n tangent and left
+    normal of the stretch, k its curvature: h (1 - (g.T)^2) + k (g.n). If h has no lower bound,
+    that of the distance to any one point of the arclet, for which h >= 0, and by how much the
+    slope toward that may differ from g.T.
+    """
+    far, gx, gy, _ = foot
+    tx, ty, least, most = along
+    if not (-np.inf < least and most < np.inf) or far <= 2.0 * length:
+        return -np.inf, np.inf, 0.0
+    # how much the angle between g and T changes
+    change = length / (far - length) + max(abs(least), abs(most)) * length
+    across, side = abs(gx * ty - gy * tx), gy * tx - gx * ty
+    square_low = max(across - change, 0.0) ** 2
+    square_high = min(across + change, 1.0) ** 2
+    side_low, side_high = max(side - change, -1.0), min(side + change, 1.0)
+    h_low, slack = _least_bend(row, foot, length), 0.0
+    if h_low == -np.inf:
+        h_low, slack = 0.0, row[9] / far
+    # The distance to a set bends by no more than that to a point.
+    over = square_high / (far - length)
+    over += max(max(least * side_low, least * side_high), max(most * side_low, most * side_high))
+    under = h_low * (square_high if h_low < 0.0 else square_low)
+    under += min(min(least * side_low, least * side_high), min(most * side_low, most * side_high))
+    return under, over, slack
+
+
+@kernel
+def _least_bend(row: Floats, foot: tuple[float, float, float, float], length: float) -> float:
+    """A lower bound, not above 0, of the curvature of an arclet's distance within ``length``."""
+    far, gx, gy, t = foot
+    # Curvature toward the point is positive on the right of the arclet.
+    dx, dy = row[5] + row[7], row[6] + row[8]
+    if t <= 0.0:
+        dx, dy = row[5], row[6]
+    elif t >= 1.0:
+        dx, dy = row[7], row[8]
+    right = gx * dy - gy * dx
+    if abs(right) > _BESIDE * math.sqrt(dx * dx + dy * dy):
+        least = row[0] if right > 0.0 else -row[1]
+    else:
+        # The foot is an end, and the point ahead of it: those of neighbors may be on both sides.
+        least = min(row[0], -row[1])
+    if least >= 0.0:
+        return 0.0
+    width = 1.0 + least * (far + length)
+    return least / width if width > 0.0 else -np.inf
+
+
+@kernel
+def _point_of(arcs: Floats, i: int, t: float) -> tuple[float, float]:
+    x = y = 0.0
+    if t == 1.0:
+        return arcs[i, 1], arcs[i, 2]
+    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
+        x = (x + arcs[i, k]) * t
+        y = (y + arcs[i, k + 1]) * t
+    return arcs[i, 3] + x, arcs[i, 4] + y
+
+
+@kernel
+def _gap_at(
+    arclets: Arclets,
+    joints: Joints,
+    trimming: Trimming,
+    element: tuple[int, int],
+    j: int,
+    t: float,
+    scratch: Scratch,
+) -> float:
+    """How much farther than |d| the arclet j is from a point of the parallel."""
+    point = parallel_point(arclets.arcs, joints, element, t, trimming.distance)
+    squared, _ = closest_on(arclets.arcs, j, point[0], point[1], np.inf, scratch)
+    return math.sqrt(squared) - abs(trimming.distance) - trimming.grain
+
+
+@kernel
+def _passes(
+    arclets: Arclets,
+    joints: Joints,
+    trimming: Trimming,
+    element: tuple[int, int],
+    j: int,
+    ends: tuple[float, float],
+    scratch: Scratch,
+) -> float:
+    """Where the gap to arclet j, below zero at the first end, is zero: secants in a bracket."""
+    low, high = ends
+    f_low = _gap_at(arclets, joints, trimming, element, j, low, scratch)
+    f_high = _gap_at(arclets, joints, trimming, element, j, high, scratch)
+    side = 0
+    t = high
+    for step in range(_STEPS):
+        t = low - f_low * (high - low) / (f_high - f_low)
+        # every fourth step halves, so that the bracket shrinks whatever the function
+        if step % 4 == 3 or not min(low, high) < t < max(low, high):
+            t = 0.5 * (low + high)
+        if t in (low, high):
+            break
+        f = _gap_at(arclets, joints, trimming, element, j, t, scratch)
+        if f == 0.0:
+            break
+        # Illinois: an end that stays loses half of its weight
+        if f < 0.0:
+            low, f_low = t, f
+            f_high = 0.5 * f_high if side < 0 else f_high
+            side = -1
+        else:
+            high, f_high = t, f
+            f_low = 0.5 * f_low if side > 0 else f_low
+            side = 1
+    return t

@@ -1,0 +1,89 @@
+"""Which arclets can be told without looking not to enter the disks of another one's offset.
+
+An arclet's own chain, as far as it turns by less than half a turn and neither has a corner toward
+the offset nor bends by more than 1 / |d| toward it, cannot enter the disk of radius |d| that
+touches the arclet (Schur's theorem).
+"""
+
+from __future__ import annotations
+
+import math
+
+from splinesdf._arrays import Bools, Ints
+from splinesdf._jit import kernel
+from splinesdf._tables import Arclets, Joints, Trimming
+
+# How far a chain may turn (radians) and still be called the arclet's own. It must be below pi, by
+# more than an arclet turns.
+_OWN_TURN = 2.0
+# A joint that turns by half a turn within this (radians) is a cusp: branches so close may cross
+# once more, so the offset is compared with the exact distance near them.
+_CUSP = 1e-3
+
+
+@kernel
+def own_chains(
+    arclets: Arclets, joints: Joints, trimming: Trimming, bent: Bools, reach: Ints
+) -> None:
+    """Fill which arclets bend too much, and how far each one's own chain reaches.
+
+    Parameters
+    ----------
+    bent : ndarray of bool, shape (n,)
+        Filled, by arclet: whether its parallel may run backward somewhere.
+    reach : ndarray, shape (n, 3)
+        Filled, by place in ``joints.order``: how many of the following and how many of the
+        preceding arclets belong to the chain; 1 if one of the chain is bent, else 0.
+    """
+    order, loops, turn = joints.order, joints.loops, joints.turn
+    distance = trimming.distance
+    for i in range(bent.shape[0]):
+        low, high = trimming.bends[i, 0], trimming.bends[i, 1]
+        # written so that infinite ranges and NaN count as bent
+        bent[i] = not (1.0 + low * distance > 0.0 and 1.0 + high * distance > 0.0)
+    for j in range(loops.shape[0] - 1):
+        first, size = loops[j], loops[j + 1] - loops[j]
+        for backward in range(2):
+            count = 0
+            total = 0.0
+            for n in range(size):
+                p = size - 1 - n if backward else n
+                while count < size - 1:
+                    # the last one in the chain, the next one, and the joint between them
+                    if backward:
+                        last = order[first + (p - count) % size]
+                        other = order[first + (p - count - 1) % size]
+                        angle = turn[other]
+                    else:
+                        last = order[first + (p + count) % size]
+                        other = order[first + (p + count + 1) % size]
+                        angle = turn[last]
+                    if angle * distance < -trimming.smooth * abs(distance):
+                        break
+                    more = abs(angle) + joints.turning[other]
+                    if count > 0 and total + more > _OWN_TURN:
+                        break
+                    total += more
+                    count += 1
+                reach[first + p, backward] = count
+                if count > 0:
+                    # what the first step of this chain was, the next one has behind it
+                    other = (
+                        order[first + (p - 1) % size] if backward else order[first + (p + 1) % size]
+                    )
+                    angle = turn[other] if backward else turn[order[first + p]]
+                    total -= abs(angle) + joints.turning[other]
+                    count -= 1
+                    total = 0.0 if count == 0 else total
+        for p in range(size):
+            reach[first + p, 2] = 0
+        # Whether a bent one is in the chain: distance to the nearest bent one on either side.
+        for backward in range(2):
+            since = 2 * size
+            for n in range(2 * size):
+                p = (2 * size - 1 - n if not backward else n) % size
+                i, before = order[first + p], order[first + (p - 1) % size]
+                cusp = max(abs(turn[i]), abs(turn[before])) > math.pi - _CUSP
+                since = 0 if bent[i] or cusp else since + 1
+                if since <= reach[first + p, backward]:
+                    reach[first + p, 2] = 1
