@@ -6,7 +6,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets, Joints
-from splinesdf.curves.geometry import points_at
+from splinesdf.curves.geometry import derivatives_at, points_at
 
 # An arclet whose velocity at an end is below this share of its chord stands still there.
 _STANDS = 1e-8
@@ -15,7 +15,9 @@ _STANDS = 1e-8
 # merely sharp are looked at too, which does no harm.
 _CUSP = 1e-3
 # Where on the branches of a cusp they are compared, as shares of the shorter one.
-_ON_BRANCHES = (1e-3, 1e-2, 0.1, 1.0)
+_ON_BRANCHES = (1e-3, 1e-2, 0.1, 0.5)
+# Steps to the nearest point of the other branch, from one that is nearly the nearest.
+_STEPS = 5
 # Branches that are no farther apart than this share of the largest coordinate are so by rounding.
 _APART = 16 * 2.220446049250313e-16
 # Where one piece of the shape was cut it does not turn; tangents of very short arclets differ by
@@ -109,23 +111,31 @@ def _close_up(turn: Floats, bend: Floats, cusp: int, order: Ints, loops: Ints) -
 
 
 def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
-    """Positive where the tip points outward, negative where inward: (n,).
+    """Positive where the tip points outward, negative where inward, 0 if that cannot be told: (n,).
 
-    The inside is on the left of both branches. If the leaving one lies to the right of the
-    arriving one, seen from the tip, the inside is between them, and the tip points outward.
+    The inside is on the left of both branches: if the arriving one lies on the left of the leaving
+    one, the inside is between them, and the tip points outward.
     """
     result = np.zeros(len(arclet))
     following = boundary.following[arclet]
     chords = [
         np.hypot(*(boundary.end[which] - boundary.start[which]).T) for which in (arclet, following)
     ]
-    shorter = np.minimum(*chords)
-    tip = boundary.end[arclet]
     noise = _APART * float(np.abs(boundary.boxes[0]).max())
     for share in _ON_BRANCHES:
-        before = points_at(boundary, arclet, 1.0 - share * shorter / chords[0]) - tip
-        after = points_at(boundary, following, share * shorter / chords[1]) - tip
-        cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-        apart = np.abs(cross) > noise * share * shorter
-        result = np.where((result == 0.0) & apart, -cross, result)
+        length = share * np.minimum(*chords)
+        before = points_at(boundary, arclet, 1.0 - length / chords[0])
+        # The nearest point of the other branch: across from there is where the first one lies.
+        at = length / chords[1]
+        for _ in range(_STEPS):
+            ahead, _ = derivatives_at(boundary, following, at)
+            apart = before - points_at(boundary, following, at)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                step = np.sum(apart * ahead, axis=1) / np.sum(ahead * ahead, axis=1)
+            at = np.clip(at + np.nan_to_num(step), 0.0, 1.0)
+        ahead, _ = derivatives_at(boundary, following, at)
+        apart = before - points_at(boundary, following, at)
+        cross = ahead[:, 0] * apart[:, 1] - ahead[:, 1] * apart[:, 0]
+        told = np.abs(cross) > noise * np.hypot(ahead[:, 0], ahead[:, 1])
+        result = np.where((result == 0.0) & told, cross, result)
     return result

@@ -82,8 +82,8 @@ def narrow(
         if lowest > 0.0:
             continue
         if abs(slope) > slack + max(abs(under), abs(over)) * length:
-            at_a = _gap_at(arclets, joints, trimming, element, j, a, scratch)
-            at_b = _gap_at(arclets, joints, trimming, element, j, b, scratch)
+            at_a = gap_at(arclets, joints, trimming, element, j, a, scratch)
+            at_b = gap_at(arclets, joints, trimming, element, j, b, scratch)
             if at_a <= 0.0 and at_b <= 0.0:
                 return a, b, 0, True
             if at_a < 0.0 < at_b:
@@ -189,7 +189,7 @@ def _point_of(arcs: Floats, i: int, t: float) -> tuple[float, float]:
 
 
 @kernel
-def _gap_at(
+def gap_at(
     arclets: Arclets,
     joints: Joints,
     trimming: Trimming,
@@ -216,8 +216,8 @@ def _passes(
 ) -> float:
     """Where the gap to arclet j, below zero at the first end, is zero: secants in a bracket."""
     low, high = ends
-    f_low = _gap_at(arclets, joints, trimming, element, j, low, scratch)
-    f_high = _gap_at(arclets, joints, trimming, element, j, high, scratch)
+    f_low = gap_at(arclets, joints, trimming, element, j, low, scratch)
+    f_high = gap_at(arclets, joints, trimming, element, j, high, scratch)
     side = 0
     t = high
     for step in range(_STEPS):
@@ -227,7 +227,7 @@ def _passes(
             t = 0.5 * (low + high)
         if t in (low, high):
             break
-        f = _gap_at(arclets, joints, trimming, element, j, t, scratch)
+        f = gap_at(arclets, joints, trimming, element, j, t, scratch)
         if f == 0.0:
             break
         # Illinois: an end that stays loses half of its weight

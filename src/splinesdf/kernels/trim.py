@@ -26,7 +26,7 @@ import numpy as np
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Joints, Scratch, Trimming
-from splinesdf.kernels.gaps import narrow
+from splinesdf.kernels.gaps import gap_at, narrow
 from splinesdf.kernels.nearest import room_to_search, search
 from splinesdf.kernels.parallels import parallel_point
 
@@ -242,7 +242,11 @@ def _trim_stretch(
                 stack[size + 1, 2], stack[size + 1, 3] = top, left
                 size += 2
                 continue
-            if _is_near(arclets, x, y, radius - grain, scratch):
+            beyond = True
+            for k in range(left):
+                j = near[top + k]
+                beyond = beyond and gap_at(arclets, joints, trimming, element, j, m, scratch) > 0.0
+            if not beyond:
                 continue
         if compared:
             total = _compare(

@@ -285,8 +285,8 @@ def _without_specks(loops: Loops, least: float) -> Loops:
     low = np.minimum.reduceat(loops.start, loops.first[:-1])
     high = np.maximum.reduceat(loops.start, loops.first[:-1])
     sizes = np.diff(loops.first)
-    # A loop of one or two rows has no extent between its joints, and is none of the smallest.
-    kept = ((high - low).max(axis=1) > least) | (sizes < 3)
+    # One row alone that is a loop is a speck: none turns by a full turn.
+    kept = (high - low).max(axis=1) > least
     if kept.all():
         return loops
     rows = np.repeat(kept, sizes)
