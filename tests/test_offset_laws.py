@@ -187,7 +187,9 @@ def region(contours: Sequence[Contour], fine: float) -> shapely.Geometry:
     """What is nearer to the inside, as a polygon: loops one in the other take turns."""
     result = shapely.Polygon()
     for contour in contours:
-        result = shapely.symmetric_difference(result, shapely.Polygon(contour.points(fine)))
+        # Where loops touch themselves, as gamma3 at 0 does, chords may cross.
+        polygon = shapely.make_valid(shapely.Polygon(contour.points(fine)))
+        result = shapely.symmetric_difference(result, polygon)
     return result
 
 
