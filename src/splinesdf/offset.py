@@ -25,8 +25,9 @@ from splinesdf.offsets.at_distance import contours_at
 
 # Points an arc at which `deviation` measures: an arc's error has one or two bumps.
 _MEASURED = np.linspace(0.0, 1.0, 9)
-# Where parallels meet only to rounding, as where walls are just twice the distance apart, they do
-# not at a distance that differs by such a share of the tolerance. Larger: less is left for arcs.
+# Where rounding decides, as where walls are just twice the distance apart and parallels run on top
+# of each other, it does not at a distance that differs by such a share of the tolerance. Larger:
+# less of the tolerance is left for the arcs.
 _SHIFTS = (0.0, 0.125, -0.125, 0.25, -0.25)
 
 
@@ -103,11 +104,15 @@ def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[
 
 def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
     """The contours at one distance."""
-    for share in _SHIFTS:
+    best = None
+    for share in _SHIFTS if distance else (0.0,):
         moved = distance + math.copysign(share * tolerance, distance)
         found = contours_at(shape, moved, (1.0 - abs(share)) * tolerance)
-        if found is not None:
-            return nested([replace(contour, distance=distance) for contour in found])
+        best = found if best is None or (found and found.clear) else best
+        if best is not None and best.clear:
+            break
+    if best is not None:
+        return nested([replace(contour, distance=distance) for contour in best.contours])
     # A boundary that crosses itself within rounding has parallels with loose ends. A level set of
     # a spline has none, whatever it is a fit of.
     fitted = fit(shape, tolerance=tolerance, band=(distance, distance))

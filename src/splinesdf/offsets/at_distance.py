@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,9 +21,18 @@ _CLOSER, _ROUNDS = 0.125, 5
 # Arcs nearer to one another than this share of the largest coordinate meet; but arcs that leave a
 # corner side by side are no farther apart, for rounding, up to the second one from it.
 _APART, _FROM_CORNER = 1e-12, 1e-7
+# A corner that turns by half a turn within this (radians) is a cusp.
+_CUSP = 1e-3
 
 
-def contours_at(shape: Shape, distance: float, tolerance: float) -> list[Contour] | None:
+class Found(NamedTuple):
+    """The contours at one distance."""
+
+    contours: list[Contour]
+    clear: bool  # no two arcs meet but at their ends, and no contour turns back on itself
+
+
+def contours_at(shape: Shape, distance: float, tolerance: float) -> Found | None:
     """The contours at a distance, or None if trimming leaves ends that do not fit together."""
     stretches = trimmed(shape, distance, tolerance) if distance else _whole(shape)
     loops = loops_of(shape, stretches, distance, tolerance)
@@ -39,23 +49,36 @@ def _whole(shape: Shape) -> Stretches:
     )
 
 
-def _contours(shape: Shape, loops: Loops, distance: float, tolerance: float) -> list[Contour]:
+def _contours(shape: Shape, loops: Loops, distance: float, tolerance: float) -> Found:
     if len(loops.first) < 2:
-        return []
+        return Found([], True)
     runs, starts = runs_of(shape, loops, distance)
     allowed = np.full(len(runs.kind), tolerance)
     for _ in range(_ROUNDS):
         arcs, weights, owner = _fitted(shape, runs, distance, allowed)
         cuts = np.searchsorted(owner, starts)
-        meeting = np.unique(owner[_meeting(arcs, weights, cuts)])
+        following = np.arange(1, len(arcs) + 1)
+        following[cuts[1:] - 1] = cuts[:-1]
+        meeting = np.unique(owner[_meeting(arcs, weights, following)])
         if not len(meeting):
             break
         allowed[meeting] *= _CLOSER
+    clear = not len(meeting) and not _turns_back(arcs, following)
     arcs += shape.boundary.origin
-    return [
+    contours = [
         Contour(arcs[a:b], weights[a:b], distance=distance, y_down=shape.y_down)
         for a, b in pairwise(cuts)
     ]
+    return Found(contours, clear)
+
+
+def _turns_back(arcs: Floats, following: Ints) -> bool:
+    """Whether a contour has a cusp: where the skeleton runs along the level, to rounding."""
+    before = arcs[:, 2] - arcs[:, 1]
+    after = arcs[following, 1] - arcs[following, 0]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turn = np.arctan2(cross, np.sum(before * after, axis=1))
+    return bool((np.abs(turn) > np.pi - _CUSP).any())
 
 
 def _fitted(
@@ -76,12 +99,10 @@ def _fitted(
         room = count
 
 
-def _meeting(arcs: Floats, weights: Floats, cuts: Ints) -> Ints:
-    """Arcs that meet another one elsewhere than at an end they share; loop j is cuts[j:j + 2]."""
+def _meeting(arcs: Floats, weights: Floats, following: Ints) -> Ints:
+    """Arcs that meet another one elsewhere than at an end they share."""
     from splinesdf.kernels.meetings import find_meetings  # Numba loads only when it is used
 
-    following = np.arange(1, len(arcs) + 1)
-    following[cuts[1:] - 1] = cuts[:-1]
     order = np.argsort(arcs[:, :, 0].min(axis=1))
     room = 64
     while True:
