@@ -125,10 +125,25 @@ def false_corners(
         jump = np.where(closer, found, jump)
     same_way = (jump * turn > 0.0) | (np.abs(turn) > SPIKE)
     genuine = (np.abs(jump) > OF_JUMP * np.abs(turn)) & same_way
+    genuine |= (np.abs(turn) > SPIKE) & has_two_feet(shape, corners, distance, tolerance)
     return result + [
         f"turns by {turn[k]:.2e}, the gradient by {jump[k]:.2e}, at {place[k]}"
         for k in np.flatnonzero(~genuine)
     ]
+
+
+def has_two_feet(
+    shape: ss.Shape, corners: Corners, distance: float, tolerance: float
+) -> np.ndarray:
+    """Whether the boundary has points at the distance, square to both tangents of a corner: (n,).
+
+    Between the branches of a spike there is no room for a walk from one to the other.
+    """
+    result = np.ones(len(corners.turn), dtype=np.bool_)
+    for way in (corners.into, corners.out_of):
+        feet = corners.place - distance * np.stack([way[:, 1], -way[:, 0]], axis=-1)
+        result &= np.abs(ss.signed_distance(shape, feet)) <= 2.0 * tolerance
+    return result
 
 
 def gradient_jump_at(

@@ -66,6 +66,9 @@ class Joints(NamedTuple):
     turn: Floats  # (n,) how far the curve turns to the left where each arclet ends, radians
     tangents: Floats  # (n, 4) unit tangents at the start and at the end of each arclet
     turning: Floats  # (n,) how far each arclet itself turns, at least 0
+    # Rows as in `Arclets`, up to the power basis; velocities that are rounding are zero, so that no
+    # normal is taken from them.
+    arcs: Floats
 
 
 class Kinds(NamedTuple):

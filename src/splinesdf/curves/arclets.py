@@ -39,9 +39,6 @@ _TURN_HALVINGS = 40
 # Too large: a real turn is missed, and the winding number is wrong within that share of the size
 # of the curve there.
 _NO_STEP = 64 * 2.220446049250313e-16
-# A velocity at an end that is rounding is none only if the next derivative is larger by this much:
-# not on arcs that are all rounding.
-_STANDS = 1e-2
 
 
 class Arcs(NamedTuple):
@@ -95,7 +92,6 @@ def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
         become neighbors in the tree.
     origin : ndarray, shape (2,)
     """
-    groups = [_standing(arcs, origin) for arcs in groups]
     degree = np.concatenate(
         [np.full(len(arcs.control), arcs.control.shape[1] - 1, dtype=np.int64) for arcs in groups]
     )
@@ -129,22 +125,6 @@ def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
         range=ranges,
         chain=chain,
     )
-
-
-def _standing(arcs: Arcs, origin: Floats) -> Arcs:
-    """Let arcs stand still exactly at the ends at which they do so to rounding, as at a cusp.
-
-    What rounding leaves of their velocity there has no direction, but normals would have it.
-    """
-    if arcs.control.shape[1] < 3:
-        return arcs
-    control = arcs.control.copy()
-    noise = _NO_STEP * (float(np.abs(control).max()) + float(np.abs(origin).max()))
-    for points in (control, control[:, ::-1]):
-        step, next_step = (np.abs(points[:, k] - points[:, 0]).max(axis=1) for k in (1, 2))
-        still = (step <= noise) & (step <= _STANDS * next_step)
-        points[still, 1] = points[still, 0]
-    return arcs._replace(control=control)
 
 
 def _rows(degree: Ints, start: Floats, end: Floats, power: Floats, bernstein: Floats) -> Floats:

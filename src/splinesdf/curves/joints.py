@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets, Joints
+from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import derivatives_at, points_at
 
-# An arclet whose velocity at an end is below this share of its chord stands still there.
-_STANDS = 1e-8
+# A velocity at an end below the first, as a share of the largest coordinate, and below the second,
+# as a share of what the next derivative is good for, is rounding: the arclet stands still there.
+# Larger: offsets are off by as much; smaller: their normals there are noise.
+_STILL, _STANDS = 1e-12, 1e-3
 # Turns within this of half a turn (radians) are cusps: rounding decides on which side of the
 # arriving branch the leaving one lies, so points of both are compared. Larger: corners that are
 # merely sharp are looked at too, which does no harm.
@@ -20,6 +25,9 @@ _ON_BRANCHES = (1e-3, 1e-2, 0.1, 0.5)
 _STEPS = 5
 # Branches that are no farther apart than this share of the largest coordinate are so by rounding.
 _APART = 16 * 2.220446049250313e-16
+# Rounding in a velocity, as a share of the largest coordinate; over its length, in its direction:
+# turns within that are none. Larger: real corners are rounded off over 1e-15 of the size.
+_DIRECTION = 16 * 2.220446049250313e-16
 # Where one piece of the shape was cut it does not turn; tangents of very short arclets differ by
 # less than this (radians), for rounding. Larger: corners of nearly cusps might be taken for it.
 _CUT = 1e-5
@@ -28,9 +36,10 @@ _CUT = 1e-5
 def joints(boundary: Arclets) -> Joints:
     """Loops, turns and tangents of a boundary; every arclet must lead to another."""
     order, loops = _loops(boundary.following)
+    arcs, vectors = _standing(boundary)
+    lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in vectors]
     leaving, arriving = (
-        vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
-        for vectors in _end_directions(boundary)
+        vector / length[:, None] for vector, length in zip(vectors, lengths, strict=True)
     )
     turn = _angle(arriving, leaving[boundary.following])
     cusps = np.flatnonzero(np.abs(turn) > np.pi - _CUSP)
@@ -38,33 +47,51 @@ def joints(boundary: Arclets) -> Joints:
     turn[cusps] = np.copysign(turn[cusps], side)
     cut = boundary.interval[:, 1] == boundary.interval[boundary.following, 0]
     cut &= boundary.piece == boundary.piece[boundary.following]
-    turn[cut & (np.abs(turn) < _CUT)] = 0.0
+    cut &= np.abs(turn) < _CUT
+    rounding = _DIRECTION * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
+    next_length = lengths[0][boundary.following]
+    none = cut | (np.abs(turn) < rounding * (1.0 / lengths[1] + 1.0 / next_length))
+    turn[none] = 0.0
+    # Both have the tangent of the one that knows it better.
+    later = np.flatnonzero(none & (lengths[1] >= next_length))
+    earlier = np.flatnonzero(none & (lengths[1] < next_length))
+    leaving[boundary.following[later]] = arriving[later]
+    arriving[earlier] = leaving[boundary.following[earlier]]
     chord = boundary.end - boundary.start
     early, late = _angle(leaving, chord), _angle(chord, arriving)
     turning = np.abs(early) + np.abs(late)
     for undecided in cusps[side == 0.0]:
         _close_up(turn, early + late, int(undecided), order, loops)
-    return Joints(order, loops, turn, np.concatenate([leaving, arriving], axis=1), turning)
+    tangents = np.concatenate([leaving, arriving], axis=1)
+    return Joints(order, loops, turn, tangents, turning, arcs)
 
 
-def _end_directions(boundary: Arclets) -> tuple[Floats, Floats]:
-    """Directions at the start and at the end of every arclet, also where it stands still."""
-    power = boundary.power
-    chord = boundary.end - boundary.start
-    steps = np.arange(1.0, power.shape[1])
-    first, last = power[:, 1], np.einsum("k,nkc->nc", steps, power[:, 1:])
-    if power.shape[1] < 3:
-        return first, last
-    bend = np.einsum("k,nkc->nc", steps * (steps - 1.0), power[:, 1:])
-    result = []
-    for velocity, other in ((first, power[:, 2]), (last, -bend)):
-        # Rounding is left of a velocity that should vanish; the next derivative decides then.
-        length = np.hypot(chord[:, 0], chord[:, 1])
-        still = np.hypot(velocity[:, 0], velocity[:, 1]) <= _STANDS * length
-        vector = np.where(still[:, None], other, velocity)
-        still = np.hypot(vector[:, 0], vector[:, 1]) <= _STANDS * length
-        result.append(np.where(still[:, None], chord, vector))
-    return result[0], result[1]
+def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
+    """Rows that stand still exactly where they do to rounding, and directions at both ends."""
+    arcs = boundary.arcs.copy()
+    degree = degrees(boundary)
+    noise = _STILL * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
+    directions = [boundary.end - boundary.start for _ in range(2)]
+    for d in np.unique(degree[degree > 1]):
+        rows = np.flatnonzero(degree == d)
+        control = control_points(boundary.power[rows, : d + 1])
+        for points, result, sign in (
+            (control, directions[0], 1.0),
+            (control[:, ::-1], directions[1], -1.0),
+        ):
+            step, next_step = (np.abs(points[:, k] - points[:, 0]).max(axis=1) for k in (1, 2))
+            still = (step <= noise) & (step <= _STANDS * next_step)
+            points[still, 1] = points[still, 0]
+            # Where the velocity vanishes the next derivative decides, and then the chord.
+            for k in (2, 1):
+                vector = sign * d * (points[:, k] - points[:, 0])
+                known = np.any(vector != 0.0, axis=1)
+                result[rows[known]] = vector[known]
+        for k in range(1, d + 1):
+            arcs[rows, 3 + 2 * k : 5 + 2 * k] = (
+                math.comb(d, k) * np.diff(control, n=k, axis=1)[:, 0]
+            )
+    return arcs, directions
 
 
 def _loops(following: Ints) -> tuple[Ints, Ints]:

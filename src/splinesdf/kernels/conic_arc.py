@@ -46,7 +46,11 @@ def run_point(
     low, high = runs.spans[k, 0], runs.spans[k, 1]
     t = high if share == 1.0 else low + share * (high - low)
     element = (runs.elements[k, 0], runs.elements[k, 1])
-    x, y, tx, ty, speed, bend = parallel_point(arclets.arcs, joints, element, t, distance)
+    x, y, tx, ty, speed, bend = parallel_point(joints, element, t, distance)
+    if element[1] == 0 and t in (0.0, 1.0):
+        # The tangent that the neighbor has, too.
+        side = 2 * int(t)
+        tx, ty = joints.tangents[element[0], side], joints.tangents[element[0], side + 1]
     return x, y, tx, ty, speed * (high - low), bend
 
 

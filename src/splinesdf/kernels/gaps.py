@@ -53,7 +53,7 @@ def narrow(
     distance = trimming.distance
     radius, grain = abs(distance), trimming.grain
     m = 0.5 * (a + b)
-    x, y, tx, ty, _, bend = parallel_point(arcs, joints, element, m, distance)
+    x, y, tx, ty, _, bend = parallel_point(joints, element, m, distance)
     low, high = a, b
     left = 0
     # A stretch that turns by at most half a turn is at most this much longer than its chords.
@@ -199,7 +199,7 @@ def gap_at(
     scratch: Scratch,
 ) -> float:
     """How much farther than |d| the arclet j is from a point of the parallel."""
-    point = parallel_point(arclets.arcs, joints, element, t, trimming.distance)
+    point = parallel_point(joints, element, t, trimming.distance)
     squared, _ = closest_on(arclets.arcs, j, point[0], point[1], np.inf, scratch)
     return math.sqrt(squared) - abs(trimming.distance) - trimming.grain
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
-from splinesdf._tables import Arclets, Joints
+from splinesdf._tables import Joints
 
 # Of an arclet's larger control step: slower than this, its direction is half rounding, and that
 # of its end is taken. Only within 1e-8 of a cusp.
@@ -22,14 +22,12 @@ _STANDS = 1e-8
 
 @kernel
 def parallel_point(
-    arcs: Floats, joints: Joints, element: tuple[int, int], t: float, distance: float
+    joints: Joints, element: tuple[int, int], t: float, distance: float
 ) -> tuple[float, float, float, float, float, float]:
     """Point, unit tangent of the shape there, speed and curvature of the parallel.
 
     Parameters
     ----------
-    arcs : ndarray
-        Rows of `Arclets.arcs`.
     joints : Joints
     element : tuple of int
         The arclet, and whether its parallel (0) or the arc around its end (1) is meant.
@@ -43,6 +41,7 @@ def parallel_point(
         parallel, positive to the left, and infinite where the speed is zero.
     """
     i, corner = element
+    arcs = joints.arcs
     if corner:
         angle = t * joints.turn[i]
         c, s = math.cos(angle), math.sin(angle)
@@ -75,13 +74,11 @@ def parallel_point(
 
 @kernel
 def parallel_points(
-    arclets: Arclets, joints: Joints, elements: Ints, at: Floats, distance: float, rows: Floats
+    joints: Joints, elements: Ints, at: Floats, distance: float, rows: Floats
 ) -> None:
     """Fill what `parallel_point` returns, for elements (n, 2) at parameters (n,): (n, 6)."""
     for k in range(elements.shape[0]):
         element = (elements[k, 0], elements[k, 1])
-        x, y, tx, ty, speed, curvature = parallel_point(
-            arclets.arcs, joints, element, at[k], distance
-        )
+        x, y, tx, ty, speed, curvature = parallel_point(joints, element, at[k], distance)
         rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3] = x, y, tx, ty
         rows[k, 4], rows[k, 5] = speed, curvature

@@ -140,7 +140,7 @@ def _forward(
     if not change < np.inf:
         for k in range(_CUSP_PARTS):
             a, b = k / _CUSP_PARTS, (k + 1) / _CUSP_PARTS
-            middle = parallel_point(arcs, joints, element, 0.5 * (a + b), distance)
+            middle = parallel_point(joints, element, 0.5 * (a + b), distance)
             if middle[4] > 0.0:
                 parts[count, 0], parts[count, 1] = a, b
                 count += 1
@@ -149,7 +149,7 @@ def _forward(
     while True:
         width = 1.0 / (1 << depth)
         a = at * width
-        middle = parallel_point(arcs, joints, element, a + 0.5 * width, distance)
+        middle = parallel_point(joints, element, a + 0.5 * width, distance)
         # 1 / (1 + kappa d), from the curvature of the parallel
         bound = 0.5 * width * change
         # 1 + kappa d = 1 / (1 - d curvature)
@@ -199,11 +199,11 @@ def _trim_stretch(
         )
         looked += 1
         m = 0.5 * (a + b)
-        middle = parallel_point(arcs, joints, element, m, distance)
+        middle = parallel_point(joints, element, m, distance)
         x, y = middle[0], middle[1]
         reach = 0.0
         for t in (a, b):
-            end = parallel_point(arcs, joints, element, t, distance)
+            end = parallel_point(joints, element, t, distance)
             reach = max(reach, math.sqrt((end[0] - x) ** 2 + (end[1] - y) ** 2))
         reach += grain
         if base < 0:
@@ -328,12 +328,12 @@ def _compare(
     low, high = span
     limit = abs(trimming.distance) - trimming.grain
     last = low
-    point = parallel_point(arclets.arcs, joints, element, low, trimming.distance)
+    point = parallel_point(joints, element, low, trimming.distance)
     before = _is_near(arclets, point[0], point[1], limit, scratch)
     began = low
     for k in range(1, _COMPARED + 1):
         t = high if k == _COMPARED else low + (high - low) * k / _COMPARED
-        point = parallel_point(arclets.arcs, joints, element, t, trimming.distance)
+        point = parallel_point(joints, element, t, trimming.distance)
         now = _is_near(arclets, point[0], point[1], limit, scratch)
         if now != before:
             a, b = last, t
@@ -341,7 +341,7 @@ def _compare(
                 m = 0.5 * (a + b)
                 if m in (a, b):
                     break
-                point = parallel_point(arclets.arcs, joints, element, m, trimming.distance)
+                point = parallel_point(joints, element, m, trimming.distance)
                 if _is_near(arclets, point[0], point[1], limit, scratch) == before:
                     a = m
                 else:

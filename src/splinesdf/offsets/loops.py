@@ -25,10 +25,13 @@ _WIDER = 30.0
 _SHORT = 1e-4
 # Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size.
 _SHALLOW = 1e-5
+# They may cross so far (in the parameter) beyond the end of an arclet, on its continuation.
+_BEYOND = 1e-3
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
 _MOVED = 1e-3
-# A loop that is smaller than this share of the tolerance is left out: it may be rounding.
-_LEAST = 0.1
+# A loop that is smaller than this share of the tolerance, or of the size, is left out: it may be
+# what rounding leaves next to where parallels cross at a small angle.
+_LEAST, _SPECK = 1e-3, 1e-9
 
 
 class Loops(NamedTuple):
@@ -48,7 +51,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     follows = _run_on(shape, stretches, distance)
     stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)
     if not len(follows):
-        return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)), tolerance)
+        return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)), 0.0)
     spans = stretches.spans.copy()
     points = np.stack([parallels(shape, stretches.elements, at, distance) for at in spans.T])
     natural = follows >= 0
@@ -65,7 +68,8 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     bridges = _bridges(shape, points, ends, follows[ends], distance, tolerance)
     if bridges is None:
         return None
-    return _as_loops(Stretches(stretches.elements, spans), follows, points, bridges, tolerance)
+    least = max(_LEAST * tolerance, _SPECK * shape.size)
+    return _as_loops(Stretches(stretches.elements, spans), follows, points, bridges, least)
 
 
 def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
@@ -173,8 +177,10 @@ def _to_crossings(
             step_a = (gap[:, 0] * vb[:, 1] - gap[:, 1] * vb[:, 0]) / cross
             step_b = (gap[:, 0] * va[:, 1] - gap[:, 1] * va[:, 0]) / cross
         new_a, new_b = a + step_a, b + step_b
-        usable = (new_a > spans[one, 0]) & (new_a <= 1.0)
-        usable &= (new_b < spans[other, 1]) & (new_b >= 0.0)
+        usable = (new_a > spans[one, 0]) & (new_a <= 1.0 + _BEYOND)
+        usable &= (new_b < spans[other, 1]) & (new_b >= -_BEYOND)
+        # Beyond both ends it would be a miter.
+        usable &= (new_a <= 1.0) | (new_b >= 0.0)
         new_a, new_b = np.where(usable, new_a, a), np.where(usable, new_b, b)
         new_at_a = parallels(shape, stretches.elements[one], new_a, distance)
         new_at_b = parallels(shape, stretches.elements[other], new_b, distance)
@@ -227,7 +233,7 @@ def _bridges(
 
 
 def _as_loops(
-    stretches: Stretches, follows: Ints, points: Floats, bridges: Floats, tolerance: float
+    stretches: Stretches, follows: Ints, points: Floats, bridges: Floats, least: float
 ) -> Loops:
     """Rows in the order of the loops, joints made equal to the bit."""
     count = len(follows)
@@ -259,7 +265,7 @@ def _as_loops(
     loops = Loops(
         elements[order], spans[order], start[order], end[order], center[order], smooth[order], first
     )
-    return _without_specks(loops, _LEAST * tolerance)
+    return _without_specks(loops, least)
 
 
 def _cycles(follows: Ints) -> tuple[Ints, Ints]:

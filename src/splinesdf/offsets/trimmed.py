@@ -91,9 +91,7 @@ def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floa
     from splinesdf.kernels.parallels import parallel_points  # Numba loads only when it is used
 
     rows = np.empty((len(at), 6))
-    parallel_points(
-        shape.boundary, shape.joints, elements, np.ascontiguousarray(at), distance, rows
-    )
+    parallel_points(shape.joints, elements, np.ascontiguousarray(at), distance, rows)
     return rows
 
 
