@@ -25,6 +25,8 @@ from splinesdf.offsets.at_distance import contours_at
 
 # Points an arc at which `deviation` measures: an arc's error has one or two bumps.
 _MEASURED = np.linspace(0.0, 1.0, 9)
+# The least tolerance, as a share of the largest number around: a few hundred roundings.
+_LEAST_TOLERANCE = 1e-13
 # Where rounding decides, as where walls are just twice the distance apart and parallels run on top
 # of each other, it does not at a distance that differs by such a share of the tolerance. Larger:
 # less of the tolerance is left for the arcs.
@@ -78,13 +80,25 @@ def offset(
         if distances is not None:
             raise InputError("expected distances or a step, got both")
         return _until_nothing_is_left(shape, step, asked)
+    if distances is None:
+        raise InputError("expected distances or a step, got neither")
     try:
         wanted = np.atleast_1d(np.asarray(distances, dtype=np.float64))
     except (TypeError, ValueError) as error:
         raise InputError(f"expected distances as numbers, got {distances!r}") from error
     if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
         raise InputError(f"expected one or more finite distances, got {distances!r}")
+    _check_rounding(shape, float(np.abs(wanted).max()), asked)
     return [contour for d in wanted.tolist() for contour in _at(shape, d, asked)]
+
+
+def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
+    least = _LEAST_TOLERANCE * max(*map(abs, shape.box), farthest)
+    if tolerance < least:
+        raise InputError(
+            f"expected a tolerance of at least {least:.2g}, above the rounding of the coordinates, "
+            f"got {tolerance:.2g}: raise it, or move the shape nearer to the origin"
+        )
 
 
 def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[Contour]:
@@ -93,6 +107,7 @@ def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[
             f"expected a negative step, inward, until nothing is left, got {step!r}: "
             "outward there is no end, so give the distances"
         )
+    _check_rounding(shape, 0.0, tolerance)
     result: list[Contour] = []
     for number in count(1):
         found = _at(shape, number * float(step), tolerance)

@@ -114,8 +114,11 @@ def _round(runs: Runs, r: int, arcs: Floats, weights: Floats, owner: Ints, total
     ax, ay = runs.start[first, 0], runs.start[first, 1]
     ex, ey = runs.end[last, 0], runs.end[last, 1]
     radius = 0.5 * (math.hypot(ax - x, ay - y) + math.hypot(ex - x, ey - y))
-    count = max(1, math.ceil(abs(sweep) / _QUARTER))
     began = math.atan2(ay - y, ax - x)
+    # Tangents say how often it goes round; where it ends, the end itself.
+    ended = math.atan2(ey - y, ex - x)
+    sweep = ended - began + 2.0 * math.pi * round((sweep - ended + began) / (2.0 * math.pi))
+    count = max(1, math.ceil(abs(sweep) / _QUARTER))
     half = 0.5 * sweep / count
     weight = math.cos(half)
     for k in range(count):
