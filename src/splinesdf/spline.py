@@ -21,6 +21,7 @@ from splinesdf.errors import InputError
 from splinesdf.level_sets import contours
 from splinesdf.meshes import Box, Grid, Mesh, Quadtree
 from splinesdf.meshes.mesh import check_domain
+from splinesdf.nesting import nested
 from splinesdf.provenance import Provenance
 from splinesdf.spaces import bspline_coefficients, tensor_ordinates
 from splinesdf.spaces.cells import frames, power_form
@@ -219,9 +220,10 @@ class SplineSDF:
         """The level set ``s = level`` as chains of conic arcs, lower values on their left.
 
         Closed and with a continuous tangent, but for those that leave the domain (``closed`` is
-        False) and where the gradient vanishes. Left and right as x turns into y.
+        False) and where the gradient vanishes. Left and right as x turns into y. Each has the
+        contour that directly encloses it as its ``parent``.
         """
-        return contours(self.mesh, self.ordinates, level, y_down=self.y_down)
+        return nested(contours(self.mesh, self.ordinates, level, y_down=self.y_down))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the spline to an ``.npz`` file, its shape and provenance with it.
