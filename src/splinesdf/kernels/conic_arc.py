@@ -15,6 +15,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from splinesdf._arrays import Floats
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Joints, Runs
 from splinesdf.kernels.parallels import parallel_point
@@ -59,115 +62,112 @@ def conic_arc(
     arclets: Arclets,
     joints: Joints,
     runs: Runs,
-    begin: int,
-    span: tuple[float, float],
-    node: tuple[float, float, float, float],
-    other: tuple[float, float, float, float],
+    span: tuple[int, float, float],
+    ends: tuple[tuple[float, float, float, float], tuple[float, float, float, float]],
     asked: tuple[float, float],
     finer: int,
-) -> tuple[bool, float, float, float]:
-    """Whether one conic does for a part of a run; its middle control point and weight."""
-    distance, tolerance = asked
-    ax, ay, ux, uy = node
-    bx, by, vx, vy = other
+    points: Floats,
+) -> tuple[float, float, float, float]:
+    """How far one conic is off a part of a run; its middle control point and weight.
+
+    Parameters
+    ----------
+    span : tuple
+        The run's first stretch, and the places between which a conic is wanted.
+    ends : tuple
+        Point and unit tangent at both.
+    asked : tuple of float
+        Distance and tolerance.
+    finer : int
+        How many times as many points as at least are looked at.
+    points : ndarray, shape (room, 2)
+        Room for them.
+
+    Returns
+    -------
+    off : float
+        As a share of what is allowed: it does if that is 1 or less. Infinite if there is no such
+        conic.
+    x, y, weight : float
+    """
+    limit = _SAFE * asked[1]
+    ax, ay, ux, uy = ends[0]
+    bx, by, vx, vy = ends[1]
     cx, cy = bx - ax, by - ay
-    cross, dot = ux * vy - uy * vx, ux * vx + uy * vy
-    turn = math.atan2(cross, dot)
-    if abs(turn) > _TURN:
-        return False, 0.0, 0.0, 0.0
-    low, high = span
-    each = math.ceil(high) - int(low)
-    count = finer * max(_POINTS, _POINTS_EACH * each)
-    # Where a short arclet turns fast its parallel is long: steps are bounded along that, too.
+    cross = ux * vy - uy * vx
+    turn = math.atan2(cross, ux * vx + uy * vy)
     chord = math.sqrt(cx * cx + cy * cy)
-    longest = _STRIDE * chord / finer
-    limit = _SAFE * tolerance
+    nothing = (np.inf, 0.0, 0.0, 0.0)
+    if abs(turn) > _TURN or chord == 0.0:
+        return nothing
+    count = _look(arclets, joints, runs, span, (ax, ay), asked[0], finer, chord, points)
+    if count < 0:
+        return nothing
+    worst = 0.0
     if abs(turn) <= _FLAT:
-        if not (chord > 0.0 and abs(cx * uy - cy * ux) <= limit):
-            return False, 0.0, 0.0, 0.0
-        place, x, y = low, ax, ay
-        while place < high:
-            place, x, y = _stride(
-                arclets,
-                joints,
-                runs,
-                begin,
-                (place, high),
-                (x, y),
-                (high - low) / count,
-                longest,
-                distance,
-            )
-            if abs((x - ax) * cy - (y - ay) * cx) > limit * chord:
-                return False, 0.0, 0.0, 0.0
-        return True, 0.5 * (ax + bx), 0.5 * (ay + by), 1.0
+        worst = abs(cx * uy - cy * ux)
+        for k in range(count):
+            worst = max(worst, abs((points[k, 0] - ax) * cy - (points[k, 1] - ay) * cx) / chord)
+        return worst / limit, 0.5 * (ax + bx), 0.5 * (ay + by), 1.0
     early, late = (cx * vy - cy * vx) / cross, (ux * cy - uy * cx) / cross
     if not (early > 0.0 and late > 0.0):
-        return False, 0.0, 0.0, 0.0
-    px, py = ax + early * ux, ay + early * uy
-    triangle = (ax, ay, px - ax, py - ay, cx, cy)
+        return nothing
+    triangle = (ax, ay, early * ux, early * uy, cx, cy)
     # The weight, by the point that is nearest to P1.
     most = square = 0.0
-    place, x, y = low, ax, ay
-    while place < high:
-        place, x, y = _stride(
-            arclets,
-            joints,
-            runs,
-            begin,
-            (place, high),
-            (x, y),
-            (high - low) / count,
-            longest,
-            distance,
-        )
-        a, b, c = _barycentric(triangle, x, y)
+    for k in range(count):
+        a, b, c = _barycentric(triangle, points[k, 0], points[k, 1])
         if b > most and a > 0.0 and c > 0.0:
             most = b
             square = b * b / (4.0 * a * c)
     if not square > 0.0:
-        return False, 0.0, 0.0, 0.0
-    place, x, y = low, ax, ay
-    while place < high:
-        place, x, y = _stride(
-            arclets,
-            joints,
-            runs,
-            begin,
-            (place, high),
-            (x, y),
-            (high - low) / count,
-            longest,
-            distance,
-        )
-        if place < high and not _off(triangle, square, x, y) <= limit:
-            return False, 0.0, 0.0, 0.0
-    return True, px, py, math.sqrt(square)
+        return nothing
+    for k in range(count - 1):
+        off = _off(triangle, square, points[k, 0], points[k, 1])
+        # written so that NaN counts
+        if not off <= worst:
+            worst = off
+    return worst / limit, ax + early * ux, ay + early * uy, math.sqrt(square)
 
 
 @kernel
-def _stride(
+def _look(
     arclets: Arclets,
     joints: Joints,
     runs: Runs,
-    begin: int,
-    span: tuple[float, float],
-    point: tuple[float, float],
-    step: float,
-    longest: float,
+    span: tuple[int, float, float],
+    start: tuple[float, float],
     distance: float,
-) -> tuple[float, float, float]:
-    """The next place at which a run is looked at, and its point."""
-    place, high = span
-    x, y = point
-    while True:
-        at = min(place + step, high)
-        if high - at < 0.01 * step:
-            at = high
-        row = run_point(arclets, joints, runs, begin, at, distance)
-        if math.hypot(row[0] - x, row[1] - y) <= longest or place + 0.5 * step <= place:
-            return at, row[0], row[1]
-        step = 0.5 * step
+    finer: int,
+    chord: float,
+    points: Floats,
+) -> int:
+    """Fill points of a part of a run, the last one its end; how many, -1 for too many.
+
+    Where a short arclet turns fast its parallel is long, so that steps are bounded along both.
+    """
+    begin, place, high = span
+    x, y = start
+    each = math.ceil(high) - int(place)
+    step = (high - place) / (finer * max(_POINTS, _POINTS_EACH * each))
+    longest = _STRIDE * chord / finer
+    count = 0
+    while place < high:
+        if count == points.shape[0]:
+            return -1
+        length = step
+        while True:
+            at = min(place + length, high)
+            if high - at < 0.01 * length:
+                at = high
+            row = run_point(arclets, joints, runs, begin, at, distance)
+            if math.hypot(row[0] - x, row[1] - y) <= longest or place + 0.5 * length <= place:
+                break
+            length = 0.5 * length
+        place, x, y = at, row[0], row[1]
+        points[count, 0], points[count, 1] = x, y
+        count += 1
+    return count
 
 
 @kernel

@@ -25,6 +25,11 @@ _PARTS, _BENDS = 8, 1e-9
 # The next length that is tried as a share of one that fits; of one that does not when looked at
 # closely; and how near to the longest an arc is long enough.
 _GROWTH, _SHRINK, _NEAR = 1.7, 0.95, 0.03
+# What a length is aimed at, and what is enough, as shares of the deviation allowed: the fifth root
+# of the latter is within 5 % of the longest.
+_AIM, _ENOUGH = 0.9, 0.8
+# Points of one arc that are looked at, at most.
+_ROOM = 4096
 # No arc is shorter than this share of an element.
 _SHORTEST = 1e-6
 
@@ -194,17 +199,18 @@ def _free(
     arcs, weights, owner = found
     begin = runs.first[r]
     step = 1.0
+    points = np.empty((_ROOM, 2))
     node = _node(arclets, joints, runs, r, 0.0, distance)
     for b in range(count - 1):
         place, limit = breaks[b], breaks[b + 1]
         while place < limit:
-            at = _farthest(arclets, joints, runs, r, (place, limit, step), node, asked)
+            at = _farthest(arclets, joints, runs, r, (place, limit, step), node, asked, points)
             while True:
                 other = _node(arclets, joints, runs, r, at, distance)
-                fits, px, py, w = conic_arc(
-                    arclets, joints, runs, begin, (place, at), node, other, asked, _FINER
+                off, px, py, w = conic_arc(
+                    arclets, joints, runs, (begin, place, at), (node, other), asked, _FINER, points
                 )
-                if fits:
+                if off <= 1.0:
                     break
                 if at - place < _SHORTEST:
                     # Rounding is all that is left to fit.
@@ -227,6 +233,7 @@ def _farthest(
     span: tuple[float, float, float],
     node: tuple[float, float, float, float],
     asked: tuple[float, float],
+    points: Floats,
 ) -> float:
     """About how far one arc from a place can go, at most to a limit; a first step is given."""
     place, limit, step = span
@@ -237,18 +244,25 @@ def _farthest(
     while True:
         at = limit if place + length >= limit else place + length
         other = _node(arclets, joints, runs, r, at, asked[0])
-        fits, _, _, _ = conic_arc(arclets, joints, runs, begin, (place, at), node, other, asked, 1)
-        if fits:
+        off, _, _, _ = conic_arc(
+            arclets, joints, runs, (begin, place, at), (node, other), asked, 1, points
+        )
+        if off <= 1.0:
             low = length
             if at == limit:
                 return limit
+            if off > _ENOUGH:
+                return at
         else:
             high = length
         if high < _SHORTEST:
             return min(place + _SHORTEST, limit)
         if high - low < _NEAR * low:
             return place + low
-        length = _GROWTH * low if high == np.inf else 0.5 * (low + high)
+        # The error grows with the fifth power of the length.
+        length *= min(max((_AIM / max(off, 1e-9)) ** 0.2, 0.3), _GROWTH)
+        if not low < length < high:
+            length = _GROWTH * low if high == np.inf else 0.5 * (low + high)
 
 
 @kernel
