@@ -43,7 +43,7 @@ def joints(boundary: Arclets) -> Joints:
     )
     turn = _angle(arriving, leaving[boundary.following])
     cusps = np.flatnonzero(np.abs(turn) > np.pi - _CUSP)
-    side = _side_of_cusps(boundary, cusps)
+    side = _side_of_cusps(boundary, cusps) if len(cusps) else np.empty(0)
     turn[cusps] = np.copysign(turn[cusps], side)
     cut = boundary.interval[:, 1] == boundary.interval[boundary.following, 0]
     cut &= boundary.piece == boundary.piece[boundary.following]
