@@ -19,10 +19,10 @@ _STILL, _STANDS = 1e-12, 1e-3
 # arriving branch the leaving one lies, so points of both are compared. Larger: corners that are
 # merely sharp are looked at too, which does no harm.
 _CUSP = 1e-3
-# Where on the branches of a cusp they are compared, as shares of the shorter one.
-_ON_BRANCHES = (1e-3, 1e-2, 0.1, 0.5)
-# Steps to the nearest point of the other branch, from one that is nearly the nearest.
-_STEPS = 5
+# Arclets along the branches of a cusp that are looked at, until they are apart.
+_ARCLETS = 24
+# Steps to the nearest point of the other branch; arclets are nearly straight.
+_STEPS = 8
 # Branches that are no farther apart than this share of the largest coordinate are so by rounding.
 _APART = 16 * 2.220446049250313e-16
 # Rounding in a velocity, as a share of the largest coordinate; over its length, in its direction:
@@ -144,25 +144,39 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
     one, the inside is between them, and the tip points outward.
     """
     result = np.zeros(len(arclet))
-    following = boundary.following[arclet]
-    chords = [
-        np.hypot(*(boundary.end[which] - boundary.start[which]).T) for which in (arclet, following)
-    ]
     noise = _APART * float(np.abs(boundary.boxes[0]).max())
-    for share in _ON_BRANCHES:
-        length = share * np.minimum(*chords)
-        before = points_at(boundary, arclet, 1.0 - length / chords[0])
-        # The nearest point of the other branch: across from there is where the first one lies.
-        at = length / chords[1]
-        for _ in range(_STEPS):
-            ahead, _ = derivatives_at(boundary, following, at)
-            apart = before - points_at(boundary, following, at)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                step = np.sum(apart * ahead, axis=1) / np.sum(ahead * ahead, axis=1)
-            at = np.clip(at + np.nan_to_num(step), 0.0, 1.0)
-        ahead, _ = derivatives_at(boundary, following, at)
-        apart = before - points_at(boundary, following, at)
-        cross = ahead[:, 0] * apart[:, 1] - ahead[:, 1] * apart[:, 0]
-        told = np.abs(cross) > noise * np.hypot(ahead[:, 0], ahead[:, 1])
-        result = np.where((result == 0.0) & told, cross, result)
+    previous = np.empty_like(boundary.following)
+    previous[boundary.following] = np.arange(len(previous))
+    before, after = arclet.copy(), boundary.following[arclet]
+    # Arclets next to a tip are tiny: look farther along both branches until they are apart.
+    for _ in range(_ARCLETS):
+        for share in (0.5, 1.0):
+            point = points_at(boundary, before, np.full(len(before), 1.0 - share))
+            # The nearest point of the other branch: across from there is where this one lies.
+            gap = np.full(len(before), np.inf)
+            cross = np.zeros(len(before))
+            for other in (previous[after], after, boundary.following[after]):
+                apart, ahead = _across(boundary, other, point)
+                length = np.hypot(apart[:, 0], apart[:, 1])
+                side = ahead[:, 0] * apart[:, 1] - ahead[:, 1] * apart[:, 0]
+                nearer = (length < gap) & (np.abs(side) > 0.5 * length * np.hypot(*ahead.T))
+                gap, cross = np.where(nearer, length, gap), np.where(nearer, side, cross)
+            told = (result == 0.0) & (gap > noise) & np.isfinite(gap)
+            result = np.where(told, cross, result)
+        if (result != 0.0).all():
+            break
+        before, after = previous[before], boundary.following[after]
     return result
+
+
+def _across(boundary: Arclets, arclet: Ints, points: Floats) -> tuple[Floats, Floats]:
+    """From the nearest point of each arclet to its point, and the velocity there."""
+    at = np.full(len(arclet), 0.5)
+    for _ in range(_STEPS):
+        ahead, _ = derivatives_at(boundary, arclet, at)
+        apart = points - points_at(boundary, arclet, at)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.sum(apart * ahead, axis=1) / np.sum(ahead * ahead, axis=1)
+        at = np.clip(at + np.nan_to_num(step), 0.0, 1.0)
+    ahead, _ = derivatives_at(boundary, arclet, at)
+    return points - points_at(boundary, arclet, at), ahead

@@ -28,7 +28,8 @@ _INSIDE = np.array([0.25, 0.5, 0.75])
 def kinds(boundary: Arclets) -> Kinds:
     """Kind of every arclet, and center and signed radius of the round ones."""
     count = len(boundary.start)
-    largest = float(np.abs(boundary.boxes[0]).max())
+    # Rounding and compilation left what they did before the origin was moved.
+    largest = float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
     every = np.repeat(np.arange(count), len(_INSIDE))
     inside = points_at(boundary, every, np.tile(_INSIDE, count)).reshape(count, -1, 2)
     chord = boundary.end - boundary.start
