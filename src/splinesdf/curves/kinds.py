@@ -53,7 +53,10 @@ def kinds(boundary: Arclets) -> Kinds:
         curved = np.abs(off).max(axis=1) <= _OFF * scale
     straight = _of_pieces(straight, boundary.piece)
     curved = _of_pieces(curved & np.isfinite(radius), boundary.piece) & ~straight
-    curved &= _one_center(center, radius, scale, boundary.piece)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        # Rounding in a center grows with the square of radius over length.
+        unsure = _CENTERS_APART * scale + _OFF * scale * (radius / length) ** 2
+    curved &= _one_center(center, radius, length, unsure, boundary.piece)
     center, radius = _averages(center, radius, length, boundary.piece, curved)
     kind = np.where(straight, STRAIGHT, np.where(curved, ROUND, FREE))
     return Kinds(
@@ -70,13 +73,16 @@ def _of_pieces(flags: np.ndarray, piece: Ints) -> np.ndarray:
     return np.asarray(~bad[piece])
 
 
-def _one_center(center: Floats, radius: Floats, scale: Floats, piece: Ints) -> np.ndarray:
-    """Whether all arclets of an arclet's piece have the same circle."""
+def _one_center(
+    center: Floats, radius: Floats, length: Floats, unsure: Floats, piece: Ints
+) -> np.ndarray:
+    """Whether all arclets of an arclet's piece have the circle of the longest one."""
     circle = np.column_stack([np.where(np.isfinite(center), center, 0.0), np.nan_to_num(radius)])
-    first = np.zeros(int(piece.max()) + 1, dtype=np.int64)
-    first[piece[::-1]] = np.arange(len(piece))[::-1]
-    apart = np.abs(circle - circle[first[piece]]).max(axis=1)
-    return _of_pieces(apart <= _CENTERS_APART * scale, piece)
+    longest = np.zeros(int(piece.max()) + 1, dtype=np.int64)
+    order = np.argsort(length, kind="stable")
+    longest[piece[order]] = order
+    apart = np.abs(circle - circle[longest[piece]]).max(axis=1)
+    return _of_pieces(apart <= unsure, piece)
 
 
 def _averages(

@@ -100,7 +100,7 @@ def conic_arc(
     nothing = (np.inf, 0.0, 0.0, 0.0)
     if abs(turn) > _TURN or chord == 0.0:
         return nothing
-    count = _look(arclets, joints, runs, span, (ax, ay), asked[0], finer, chord, points)
+    count = look(arclets, joints, runs, span, (ax, ay), asked[0], finer, chord, points)
     if count < 0:
         return nothing
     worst = 0.0
@@ -131,7 +131,7 @@ def conic_arc(
 
 
 @kernel
-def _look(
+def look(
     arclets: Arclets,
     joints: Joints,
     runs: Runs,

@@ -13,7 +13,7 @@ import numpy as np
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Joints, Runs
-from splinesdf.kernels.conic_arc import conic_arc, run_point
+from splinesdf.kernels.conic_arc import conic_arc, look, run_point
 
 # An arc is measured at so many times as many points before it is taken.
 _FINER = 4
@@ -213,7 +213,9 @@ def _free(
                 if off <= 1.0:
                     break
                 if at - place < _SHORTEST:
-                    # Rounding is all that is left to fit.
+                    # Directions are rounding here, as next to a cusp: a chord has to do.
+                    at = _chord(arclets, joints, runs, r, (place, limit), node, asked, points)
+                    other = _node(arclets, joints, runs, r, at, distance)
                     px, py, w = 0.5 * (node[0] + other[0]), 0.5 * (node[1] + other[1]), 1.0
                     break
                 at = place + _SHRINK * (at - place)
@@ -222,6 +224,49 @@ def _free(
             step = at - place
             place, node = at, other
     return total
+
+
+@kernel
+def _chord(
+    arclets: Arclets,
+    joints: Joints,
+    runs: Runs,
+    r: int,
+    span: tuple[float, float],
+    node: tuple[float, float, float, float],
+    asked: tuple[float, float],
+    points: Floats,
+) -> float:
+    """How far a straight line from a place may go, at most to a limit, whatever its direction."""
+    place, limit = span
+    begin = runs.first[r]
+    length = limit - place
+    while True:
+        at = limit if length == limit - place else place + length
+        x, y, _, _ = _node(arclets, joints, runs, r, at, asked[0])
+        cx, cy = x - node[0], y - node[1]
+        chord = math.hypot(cx, cy)
+        start = node[0], node[1]
+        worst = 0.0
+        count = look(
+            arclets,
+            joints,
+            runs,
+            (begin, place, at),
+            start,
+            asked[0],
+            1,
+            max(chord, asked[1]),
+            points,
+        )
+        for k in range(count):
+            px, py = points[k, 0] - node[0], points[k, 1] - node[1]
+            share = (px * cx + py * cy) / (chord * chord) if chord > 0.0 else 0.0
+            share = min(max(share, 0.0), 1.0)
+            worst = max(worst, math.hypot(px - share * cx, py - share * cy))
+        if (count > 0 and worst <= 0.5 * asked[1]) or place + 0.5 * length <= place:
+            return at
+        length = 0.5 * length
 
 
 @kernel
