@@ -20,6 +20,8 @@ FREE, STRAIGHT, ROUND = 0, 1, 2
 _OFF = 32 * 2.220446049250313e-16
 # Two centers of one circle, found on short arclets, may differ by this share of size and radius.
 _CENTERS_APART = 1e-9
+# Arclets below this share of the largest coordinate are straight and round alike.
+_SHORT = 1e-6
 # Where an arclet is looked at, the middle one in the middle. A piece has several arclets as a rule,
 # and all of them must be on one circle, so that few points do.
 _INSIDE = np.array([0.25, 0.5, 0.75])
@@ -51,11 +53,14 @@ def kinds(boundary: Arclets) -> Kinds:
         off = np.hypot(*np.moveaxis(inside - center[:, None], 2, 0)) - np.abs(radius)[:, None]
         scale = largest + np.abs(radius)
         curved = np.abs(off).max(axis=1) <= _OFF * scale
-    straight = _of_pieces(straight, boundary.piece)
-    curved = _of_pieces(curved & np.isfinite(radius), boundary.piece) & ~straight
+    # What was cut off just beside a turn of x or y has no radius of its own.
+    short = length <= _SHORT * largest
+    straight = _of_pieces(straight | short, boundary.piece)
+    curved = _of_pieces((curved & np.isfinite(radius)) | short, boundary.piece) & ~straight
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         # Rounding in a center grows with the square of radius over length.
         unsure = _CENTERS_APART * scale + _OFF * scale * (radius / length) ** 2
+    unsure = np.where(short, np.inf, unsure)
     curved &= _one_center(center, radius, length, unsure, boundary.piece)
     center, radius = _averages(center, radius, length, boundary.piece, curved)
     kind = np.where(straight, STRAIGHT, np.where(curved, ROUND, FREE))
@@ -89,10 +94,11 @@ def _averages(
     center: Floats, radius: Floats, length: Floats, piece: Ints, chosen: np.ndarray
 ) -> tuple[Floats, Floats]:
     """One circle for all arclets of a piece: a center's error falls with the square of the arc."""
-    weight = np.where(chosen, length**2, 0.0)
+    known = chosen & np.isfinite(radius) & np.isfinite(center).all(axis=1)
+    weight = np.where(known, length**2, 0.0)
     total = np.bincount(piece, weight)
     sums = [
-        np.bincount(piece, weight * np.where(chosen, column, 0.0)) for column in (*center.T, radius)
+        np.bincount(piece, weight * np.where(known, column, 0.0)) for column in (*center.T, radius)
     ]
     with np.errstate(divide="ignore", invalid="ignore"):
         x, y, r = (column / total for column in sums)
