@@ -81,9 +81,8 @@ def check_same(found: Sequence[Contour], expected: Sequence[Contour], tolerance:
     assert len(found) == len(expected)
     pairs = [sorted(contours, key=lambda c: c.area) for contours in (found, expected)]
     for a, b in zip(*pairs, strict=True):
-        allowed = MEASURES * tolerance * b.length
-        assert abs(a.area - b.area) <= allowed
-        assert abs(a.length - b.length) <= allowed * b.length / np.sqrt(abs(b.area))
+        assert abs(a.area - b.area) <= MEASURES * tolerance * b.length
+        assert abs(a.length - b.length) <= MEASURES * tolerance * b.length / np.sqrt(abs(b.area))
     assert apart(found, expected, 0.1 * tolerance) <= 4.0 * tolerance
 
 
