@@ -10,6 +10,7 @@ from splinesdf.contour import Contour, evaluate
 from splinesdf.curves.kinds import FREE, ROUND, STRAIGHT
 from splinesdf.kernels.meetings import find_meetings
 from splinesdf.nesting import nested
+from splinesdf.offset import deviation
 from splinesdf.offsets.trimmed import parallels, trimmed
 from tests.chains import circle
 from tests.glyphs import glyphs
@@ -146,6 +147,21 @@ def test_fields_of_level_sets_are_nested_too() -> None:
     assert sum(c.parent is None for c in contours) == 1
     assert all(np.sign(c.area) == -np.sign(c.parent.area) for c in contours if c.parent)
     assert len(points) == 7
+
+
+@pytest.mark.parametrize("angle", [2.0545443260420138, 0.8268676483632236, 1.0434802622597035])
+def test_a_rose_turned_so_that_rounding_leaves_an_end_open(angle: float) -> None:
+    # Six branches meet in its triple point; it once took a kernel out of its arrays.
+    c, s = np.cos(angle), np.sin(angle)
+    rose = gamma("gamma3")
+    pieces = [rose.piece(i) @ np.array([[c, s], [-s, c]]) for i in range(rose.piece_count)]
+    shape = ss.Shape.from_pieces([pieces])
+    assert sorted(shape.joints.order) == list(range(len(shape.boundary.start)))
+    assert sorted(shape.joints.following) == list(range(len(shape.boundary.start)))
+    for distance, count in ((0.02, 1), (-0.02, 3)):
+        contours = ss.offset(shape, distance, tolerance=1e-5)
+        assert len(contours) == count
+        assert deviation(shape, contours) <= 1e-5
 
 
 @pytest.mark.parametrize("hole", [False, True])

@@ -63,6 +63,7 @@ class Joints(NamedTuple):
 
     order: Ints  # (n,) arclets, loop after loop, each in its order
     loops: Ints  # (n_loops + 1,) loop j has order[loops[j]:loops[j + 1]]
+    following: Ints  # (n,) the next arclet, each one once
     turn: Floats  # (n,) how far the curve turns to the left where each arclet ends, radians
     tangents: Floats  # (n, 4) unit tangents at the start and at the end of each arclet
     turning: Floats  # (n,) how far each arclet itself turns, at least 0

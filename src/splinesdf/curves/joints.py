@@ -34,7 +34,8 @@ _CUT = 1e-5
 
 
 def joints(boundary: Arclets) -> Joints:
-    """Loops, turns and tangents of a boundary; every arclet must lead to another."""
+    """Loops, turns and tangents of a boundary."""
+    boundary = boundary._replace(following=_closed(boundary))
     order, loops = _loops(boundary.following)
     arcs, vectors = _standing(boundary)
     lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in vectors]
@@ -63,7 +64,7 @@ def joints(boundary: Arclets) -> Joints:
     for undecided in cusps[side == 0.0]:
         _close_up(turn, early + late, int(undecided), order, loops)
     tangents = np.concatenate([leaving, arriving], axis=1)
-    return Joints(order, loops, turn, tangents, turning, arcs)
+    return Joints(order, loops, boundary.following, turn, tangents, turning, arcs)
 
 
 def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
@@ -92,6 +93,35 @@ def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
                 math.comb(d, k) * np.diff(control, n=k, axis=1)[:, 0]
             )
     return arcs, directions
+
+
+def _closed(boundary: Arclets) -> Ints:
+    """What follows every arclet, each once, also where contours meet in more than two branches.
+
+    There rounding may leave an end without a start; it gets the nearest start that is left.
+    """
+    following = boundary.following.copy()
+    count = len(following)
+    if (following >= 0).all() and len(np.unique(following)) == count:
+        return following
+    gap = np.hypot(*(boundary.start[following] - boundary.end).T)
+    gap[following < 0] = np.inf
+    # Of several that lead to one start the nearest keeps it.
+    order = np.argsort(-gap, kind="stable")
+    taken = np.full(count, -1)
+    taken[following[order]] = order
+    ends = np.flatnonzero((following < 0) | (taken[following] != np.arange(count)))
+    kept = np.ones(count, dtype=np.bool_)
+    kept[ends] = False
+    led_to = np.zeros(count, dtype=np.bool_)
+    led_to[following[kept]] = True
+    starts = np.flatnonzero(~led_to)
+    apart = np.hypot(*np.moveaxis(boundary.end[ends][:, None] - boundary.start[starts], 2, 0))
+    for _ in range(len(ends)):
+        one, other = np.unravel_index(int(np.argmin(apart)), apart.shape)
+        following[ends[one]] = starts[other]
+        apart[one], apart[:, other] = np.inf, np.inf
+    return following
 
 
 def _loops(following: Ints) -> tuple[Ints, Ints]:

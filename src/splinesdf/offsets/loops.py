@@ -79,7 +79,7 @@ def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
     boundary, joints = shape.boundary, shape.joints
     turns = (corner == 0) & (joints.turn[arclet] * distance > SMOOTH * abs(distance))
     # What comes next: the arc around the end, or the next arclet.
-    wanted = np.where(turns, 2 * arclet + 1, 2 * boundary.following[arclet])
+    wanted = np.where(turns, 2 * arclet + 1, 2 * joints.following[arclet])
     opening = np.full(2 * len(boundary.start), -1)
     fresh = np.flatnonzero(spans[:, 0] == 0.0)
     opening[2 * arclet[fresh] + corner[fresh]] = fresh
