@@ -46,6 +46,9 @@ _COARSE, _FEW = 32.0, 24
 _COMPARED = 4
 # Steps to where the offset is left. Bisection alone would need 53; the secants need about 8.
 _STEPS = 80
+# By how much a disk may be entered, in grains, before a stretch that is compared is cut. Larger:
+# cuts are farther from the corners that they are moved to, and small turning points are missed.
+_ENTERED = 64.0
 # Stretches of one element that are looked at. Only where two boundaries are |d| apart to rounding
 # over a length are there so many; from then on, stretches that reach no farther than a share of
 # |d| count as their middles do.
@@ -326,7 +329,8 @@ def _compare(
 ) -> int:
     """Append the parts of a stretch at whose points nothing is nearer than |d|."""
     low, high = span
-    limit = abs(trimming.distance) - trimming.grain
+    # Normals next to where a curve stands still are noisy: a disk may be entered by as much.
+    limit = abs(trimming.distance) - _ENTERED * trimming.grain
     last = low
     point = parallel_point(joints, element, low, trimming.distance)
     before = _is_near(arclets, point[0], point[1], limit, scratch)
