@@ -124,9 +124,9 @@ def conic_arc(
         return nothing
     for k in range(count - 1):
         off = _off(triangle, square, points[k, 0], points[k, 1])
-        # written so that NaN counts
-        if not off <= worst:
-            worst = off
+        if off != off:
+            return nothing
+        worst = max(worst, off)
     return worst / limit, ax + early * ux, ay + early * uy, math.sqrt(square)
 
 
