@@ -149,6 +149,14 @@ def test_fields_of_level_sets_are_nested_too() -> None:
     assert len(points) == 7
 
 
+def test_the_boundary_itself_is_on_no_side() -> None:
+    # It has cusps, next to which offsets are asked for their side.
+    for shape in (icons()["bing"], ss.Shape.from_formula("cos(t)^3", "sin(t)^3")):
+        contours = ss.offset(shape, 0.0, tolerance=1e-6)
+        assert len(contours) == len(shape.joints.loops) - 1
+        assert deviation(shape, contours) <= 1e-6
+
+
 @pytest.mark.parametrize("angle", [2.0545443260420138, 0.8268676483632236, 1.0434802622597035])
 def test_a_rose_turned_so_that_rounding_leaves_an_end_open(angle: float) -> None:
     # Six branches meet in its triple point; it once took a kernel out of its arrays.

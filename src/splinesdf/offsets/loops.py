@@ -49,7 +49,8 @@ class Loops(NamedTuple):
 def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: float) -> Loops | None:
     """Join stretches to loops, or None if one end finds no start within the tolerance."""
     follows = _run_on(shape, stretches, distance)
-    stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)
+    if distance:  # the boundary itself is on neither side
+        stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)
     if not len(follows):
         return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)), 0.0)
     spans = stretches.spans.copy()
