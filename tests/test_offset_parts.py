@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf._tables import FREE, ROUND, STRAIGHT
 from splinesdf.contour import Contour, evaluate
-from splinesdf.curves.kinds import FREE, ROUND, STRAIGHT
 from splinesdf.kernels.meetings import find_meetings
 from splinesdf.nesting import nested
 from splinesdf.offset import deviation

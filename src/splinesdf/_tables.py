@@ -63,6 +63,7 @@ class Joints(NamedTuple):
 
     order: Ints  # (n,) arclets, loop after loop, each in its order
     loops: Ints  # (n_loops + 1,) loop j has order[loops[j]:loops[j + 1]]
+    place: Ints  # (n, 3) an arclet's place in its loop, and the loop's first place and size
     following: Ints  # (n,) the next arclet, each one once
     turn: Floats  # (n,) how far the curve turns to the left where each arclet ends, radians
     tangents: Floats  # (n, 4) unit tangents at the start and at the end of each arclet
@@ -70,6 +71,10 @@ class Joints(NamedTuple):
     # Rows as in `Arclets`, up to the power basis; velocities that are rounding are zero, so that no
     # normal is taken from them.
     arcs: Floats
+
+
+# What an arclet, or a run of an offset, is.
+FREE, STRAIGHT, ROUND = 0, 1, 2
 
 
 class Kinds(NamedTuple):
@@ -86,6 +91,7 @@ class Trimming(NamedTuple):
     distance: float  # positive to the right of the boundary, which is outward
     bends: Floats  # rows of `Bends`
     smooth: float  # a joint that turns by less (radians) is none
+    cusp: float  # one that turns by half a turn within this (radians) is a cusp
     grain: float  # what is not farther than the distance by more is nearer
     shortest: float  # a stretch that reaches no farther counts as its middle does
 

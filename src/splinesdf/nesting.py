@@ -26,7 +26,7 @@ def nested(contours: Sequence[Contour]) -> list[Contour]:
     """
     count = len(contours)
     if count < 2:
-        return [replace(contour, parent=None) for contour in contours]
+        return [_inside(contour, None) for contour in contours]
     low = np.array([contour.arcs.min(axis=(0, 1)) for contour in contours])
     high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
     first = np.array([contour.arcs[0, 0] for contour in contours])
@@ -42,8 +42,12 @@ def nested(contours: Sequence[Contour]) -> list[Contour]:
     for j in np.argsort(depth, kind="stable").tolist():
         around = np.flatnonzero(encloses[:, j])
         parent = result[int(around[np.argmax(depth[around])])] if len(around) else None
-        result[j] = replace(contours[j], parent=parent)
+        result[j] = _inside(contours[j], parent)
     return [contour for contour in result if contour is not None]
+
+
+def _inside(contour: Contour, parent: Contour | None) -> Contour:
+    return contour if contour.parent is parent else replace(contour, parent=parent)
 
 
 def enclosed(contour: Contour, points: Floats) -> Bools:

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
-from itertools import count
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -109,25 +107,24 @@ def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[
         )
     _check_rounding(shape, 0.0, tolerance)
     result: list[Contour] = []
-    for number in count(1):
-        found = _at(shape, number * float(step), tolerance)
-        if not found:
-            return result
+    number = 1
+    while found := _at(shape, number * float(step), tolerance):
         result += found
-    raise AssertionError("unreachable")
+        number += 1
+    return result
 
 
 def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
     """The contours at one distance."""
     best = None
     for share in _SHIFTS if distance else (0.0,):
-        moved = distance + math.copysign(share * tolerance, distance)
-        found = contours_at(shape, moved, (1.0 - abs(share)) * tolerance)
+        shift = math.copysign(share * tolerance, distance)
+        found = contours_at(shape, distance, (1.0 - abs(share)) * tolerance, shift=shift)
         best = found if best is None or (found and found.clear) else best
         if best is not None and best.clear:
             break
     if best is not None:
-        return nested([replace(contour, distance=distance) for contour in best.contours])
+        return nested(best.contours)
     # A boundary that crosses itself within rounding has parallels with loose ends. A level set of
     # a spline has none, whatever it is a fit of.
     fitted = fit(shape, tolerance=tolerance, band=(distance, distance))

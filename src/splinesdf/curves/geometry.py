@@ -44,9 +44,11 @@ def end_tangents(arclets: Arclets) -> tuple[Floats, Floats]:
 def turns(arclets: Arclets) -> Floats:
     """By what angle the curve turns to the left where each arclet ends; 0 if it leads nowhere."""
     leaving, arriving = end_tangents(arclets)
-    leaving = leaving[arclets.following]
-    turn = np.arctan2(
-        arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
-        np.sum(arriving * leaving, axis=1),
-    )
+    turn = angles(arriving, leaving[arclets.following])
     return np.where(arclets.following >= 0, turn, 0.0)
+
+
+def angles(first: Floats, second: Floats) -> Floats:
+    """How far to turn left from one direction (n, 2) to the other, in (-pi, pi]: (n,)."""
+    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    return np.asarray(np.arctan2(cross, np.sum(first * second, axis=1)))

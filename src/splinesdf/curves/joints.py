@@ -9,7 +9,7 @@ import numpy as np
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets, Joints
 from splinesdf.curves.crossings import control_points, degrees
-from splinesdf.curves.geometry import derivatives_at, points_at
+from splinesdf.curves.geometry import angles, derivatives_at, points_at
 
 # A velocity at an end below the first, as a share of the largest coordinate, and below the second,
 # as a share of what the next derivative is good for, is rounding: the arclet stands still there.
@@ -18,7 +18,7 @@ _STILL, _STANDS = 1e-12, 1e-3
 # Turns within this of half a turn (radians) are cusps: rounding decides on which side of the
 # arriving branch the leaving one lies, so points of both are compared. Larger: corners that are
 # merely sharp are looked at too, which does no harm.
-_CUSP = 1e-3
+CUSP = 1e-3
 # Arclets along the branches of a cusp that are looked at, until they are apart.
 _ARCLETS = 24
 # Steps to the nearest point of the other branch; arclets are nearly straight.
@@ -36,14 +36,18 @@ _CUT = 1e-5
 def joints(boundary: Arclets) -> Joints:
     """Loops, turns and tangents of a boundary."""
     boundary = boundary._replace(following=_closed(boundary))
-    order, loops = _loops(boundary.following)
+    order, loops = cycles(boundary.following)
+    sizes = np.diff(loops)
+    first = np.repeat(loops[:-1], sizes)
+    place = np.empty((len(order), 3), dtype=np.int64)
+    place[order] = np.column_stack([np.arange(len(order)) - first, first, np.repeat(sizes, sizes)])
     arcs, vectors = _standing(boundary)
     lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in vectors]
     leaving, arriving = (
         vector / length[:, None] for vector, length in zip(vectors, lengths, strict=True)
     )
-    turn = _angle(arriving, leaving[boundary.following])
-    cusps = np.flatnonzero(np.abs(turn) > np.pi - _CUSP)
+    turn = angles(arriving, leaving[boundary.following])
+    cusps = np.flatnonzero(np.abs(turn) > np.pi - CUSP)
     side = _side_of_cusps(boundary, cusps) if len(cusps) else np.empty(0)
     turn[cusps] = np.copysign(turn[cusps], side)
     cut = boundary.interval[:, 1] == boundary.interval[boundary.following, 0]
@@ -59,12 +63,12 @@ def joints(boundary: Arclets) -> Joints:
     leaving[boundary.following[later]] = arriving[later]
     arriving[earlier] = leaving[boundary.following[earlier]]
     chord = boundary.end - boundary.start
-    early, late = _angle(leaving, chord), _angle(chord, arriving)
+    early, late = angles(leaving, chord), angles(chord, arriving)
     turning = np.abs(early) + np.abs(late)
     for undecided in cusps[side == 0.0]:
         _close_up(turn, early + late, int(undecided), order, loops)
     tangents = np.concatenate([leaving, arriving], axis=1)
-    return Joints(order, loops, boundary.following, turn, tangents, turning, arcs)
+    return Joints(order, loops, place, boundary.following, turn, tangents, turning, arcs)
 
 
 def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
@@ -124,16 +128,18 @@ def _closed(boundary: Arclets) -> Ints:
     return following
 
 
-def _loops(following: Ints) -> tuple[Ints, Ints]:
-    """Arclets loop after loop, and where each loop starts."""
+def cycles(following: Ints) -> tuple[Ints, Ints]:
+    """All numbers, cycle after cycle of what follows each, and where each cycle starts.
+
+    Mostly, what follows has the next number: the walk jumps only where it has not.
+    """
     count = len(following)
-    # Mostly, the next one has the next number: only where it has not does the walk jump.
     order = np.empty(count, dtype=np.int64)
     seen = np.zeros(count, dtype=np.bool_)
     breaks = np.flatnonzero(following != np.arange(1, count + 1))
     starts = [0]
     filled = 0
-    for first in [0, *(breaks[:-1] + 1).tolist()]:
+    for first in [0, *(breaks[:-1] + 1).tolist()][:count]:
         at = first
         while not seen[at]:
             end = int(breaks[np.searchsorted(breaks, at)])
@@ -145,12 +151,6 @@ def _loops(following: Ints) -> tuple[Ints, Ints]:
         if filled > starts[-1]:
             starts.append(filled)
     return order, np.array(starts, dtype=np.int64)
-
-
-def _angle(first: Floats, second: Floats) -> Floats:
-    """How far to turn left from one direction to the other, (-pi, pi]."""
-    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    return np.asarray(np.arctan2(cross, np.sum(first * second, axis=1)))
 
 
 def _close_up(turn: Floats, bend: Floats, cusp: int, order: Ints, loops: Ints) -> None:

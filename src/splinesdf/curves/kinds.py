@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import Arclets, Kinds
+from splinesdf._tables import FREE, ROUND, STRAIGHT, Arclets, Kinds
 from splinesdf.curves.geometry import points_at
 
-FREE, STRAIGHT, ROUND = 0, 1, 2
 # Points of a straight or round arclet may be off by this share of the largest coordinate, for
 # rounding and compilation (4 ulp). Larger: curves that only look like circles lose their own
 # shape by as much; smaller: circles are not recognized, and come back as several conics.

@@ -19,7 +19,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats
 from splinesdf._jit import kernel
-from splinesdf._tables import Arclets, Joints, Runs
+from splinesdf._tables import Joints, Runs
 from splinesdf.kernels.parallels import parallel_point
 
 # An arc turns by no more than this (radians). Larger: weights near zero, control points far off.
@@ -37,7 +37,7 @@ _FLAT = 1e-11
 
 @kernel
 def run_point(
-    arclets: Arclets, joints: Joints, runs: Runs, begin: int, place: float, distance: float
+    joints: Joints, runs: Runs, begin: int, place: float, distance: float
 ) -> tuple[float, float, float, float, float, float]:
     """Point, tangent, speed and bend of a run at element + share of its span."""
     k = int(place)
@@ -59,7 +59,6 @@ def run_point(
 
 @kernel
 def conic_arc(
-    arclets: Arclets,
     joints: Joints,
     runs: Runs,
     span: tuple[int, float, float],
@@ -100,7 +99,7 @@ def conic_arc(
     nothing = (np.inf, 0.0, 0.0, 0.0)
     if abs(turn) > _TURN or chord == 0.0:
         return nothing
-    count = look(arclets, joints, runs, span, (ax, ay), asked[0], finer, chord, points)
+    count = look(joints, runs, span, (ax, ay), asked[0], finer, chord, points)
     if count < 0:
         return nothing
     worst = 0.0
@@ -132,7 +131,6 @@ def conic_arc(
 
 @kernel
 def look(
-    arclets: Arclets,
     joints: Joints,
     runs: Runs,
     span: tuple[int, float, float],
@@ -160,7 +158,7 @@ def look(
             at = min(place + length, high)
             if high - at < 0.01 * length:
                 at = high
-            row = run_point(arclets, joints, runs, begin, at, distance)
+            row = run_point(joints, runs, begin, at, distance)
             if math.hypot(row[0] - x, row[1] - y) <= longest or place + 0.5 * length <= place:
                 break
             length = 0.5 * length

@@ -12,7 +12,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
-from splinesdf._tables import Arclets, Joints, Runs
+from splinesdf._tables import ROUND, STRAIGHT, Joints, Runs
 from splinesdf.kernels.conic_arc import conic_arc, look, run_point
 
 # An arc is measured at so many times as many points before it is taken.
@@ -36,7 +36,6 @@ _SHORTEST = 1e-6
 
 @kernel
 def fit_runs(
-    arclets: Arclets,
     joints: Joints,
     runs: Runs,
     distance: float,
@@ -51,7 +50,7 @@ def fit_runs(
     ----------
     tolerance : ndarray, shape (n_runs,)
     arcs : ndarray, shape (room, 3, 2)
-        Filled, relative to the origin of the arclets.
+        Filled, relative to the origin of the boundary.
     weights : ndarray, shape (room,)
         Filled.
     owner : ndarray, shape (room,)
@@ -62,16 +61,15 @@ def fit_runs(
     for r in range(runs.first.shape[0] - 1):
         begin, end = runs.first[r], runs.first[r + 1]
         kind = runs.kind[r]
-        if kind == 1:
+        if kind == STRAIGHT:
             total = _straight(runs, r, arcs, weights, owner, total)
-        elif kind == 2:
+        elif kind == ROUND:
             total = _round(runs, r, arcs, weights, owner, total)
         else:
             if _PARTS * (end - begin) + 8 > breaks.shape[0]:
                 breaks = np.empty(2 * _PARTS * (end - begin) + 8)
-            count = _find_breaks(arclets, joints, runs, (begin, end), distance, breaks)
+            count = _find_breaks(joints, runs, (begin, end), distance, breaks)
             total = _free(
-                arclets,
                 joints,
                 runs,
                 (r, count),
@@ -140,7 +138,6 @@ def _round(runs: Runs, r: int, arcs: Floats, weights: Floats, owner: Ints, total
 
 @kernel
 def _find_breaks(
-    arclets: Arclets,
     joints: Joints,
     runs: Runs,
     span: tuple[int, int],
@@ -158,7 +155,7 @@ def _find_breaks(
             place = k + part / _PARTS if part < _PARTS else k + 1.0
             # just before a joint and just behind it
             inside = place if part > 0 else k + 1e-9
-            point = run_point(arclets, joints, runs, begin, inside, distance)
+            point = run_point(joints, runs, begin, inside, distance)
             now = point[5]
             if not abs(now) * abs(point[4]) > _BENDS:
                 continue
@@ -168,7 +165,7 @@ def _find_breaks(
                     middle = 0.5 * (a + b)
                     if middle in (a, b):
                         break
-                    if run_point(arclets, joints, runs, begin, middle, distance)[5] * side > 0.0:
+                    if run_point(joints, runs, begin, middle, distance)[5] * side > 0.0:
                         a = middle
                     else:
                         b = middle
@@ -184,7 +181,6 @@ def _find_breaks(
 
 @kernel
 def _free(
-    arclets: Arclets,
     joints: Joints,
     runs: Runs,
     run: tuple[int, int],
@@ -200,22 +196,22 @@ def _free(
     begin = runs.first[r]
     step = 1.0
     points = np.empty((_ROOM, 2))
-    node = _node(arclets, joints, runs, r, 0.0, distance)
+    node = _node(joints, runs, r, 0.0, distance)
     for b in range(count - 1):
         place, limit = breaks[b], breaks[b + 1]
         while place < limit:
-            at = _farthest(arclets, joints, runs, r, (place, limit, step), node, asked, points)
+            at = _farthest(joints, runs, r, (place, limit, step), node, asked, points)
             while True:
-                other = _node(arclets, joints, runs, r, at, distance)
+                other = _node(joints, runs, r, at, distance)
                 off, px, py, w = conic_arc(
-                    arclets, joints, runs, (begin, place, at), (node, other), asked, _FINER, points
+                    joints, runs, (begin, place, at), (node, other), asked, _FINER, points
                 )
                 if off <= 1.0:
                     break
                 if at - place < _SHORTEST:
                     # Directions are rounding here, as next to a cusp: a chord has to do.
-                    at = _chord(arclets, joints, runs, r, (place, limit), node, asked, points)
-                    other = _node(arclets, joints, runs, r, at, distance)
+                    at = _chord(joints, runs, r, (place, limit), node, asked, points)
+                    other = _node(joints, runs, r, at, distance)
                     px, py, w = 0.5 * (node[0] + other[0]), 0.5 * (node[1] + other[1]), 1.0
                     break
                 at = place + _SHRINK * (at - place)
@@ -228,7 +224,6 @@ def _free(
 
 @kernel
 def _chord(
-    arclets: Arclets,
     joints: Joints,
     runs: Runs,
     r: int,
@@ -243,13 +238,12 @@ def _chord(
     length = limit - place
     while True:
         at = limit if length == limit - place else place + length
-        x, y, _, _ = _node(arclets, joints, runs, r, at, asked[0])
+        x, y, _, _ = _node(joints, runs, r, at, asked[0])
         cx, cy = x - node[0], y - node[1]
         chord = math.hypot(cx, cy)
         start = node[0], node[1]
         worst = 0.0
         count = look(
-            arclets,
             joints,
             runs,
             (begin, place, at),
@@ -271,7 +265,6 @@ def _chord(
 
 @kernel
 def _farthest(
-    arclets: Arclets,
     joints: Joints,
     runs: Runs,
     r: int,
@@ -288,10 +281,8 @@ def _farthest(
     length = limit - place if limit - place < 1.3 * step else step
     while True:
         at = limit if place + length >= limit else place + length
-        other = _node(arclets, joints, runs, r, at, asked[0])
-        off, _, _, _ = conic_arc(
-            arclets, joints, runs, (begin, place, at), (node, other), asked, 1, points
-        )
+        other = _node(joints, runs, r, at, asked[0])
+        off, _, _, _ = conic_arc(joints, runs, (begin, place, at), (node, other), asked, 1, points)
         if off <= 1.0:
             low = length
             if at == limit:
@@ -312,15 +303,15 @@ def _farthest(
 
 @kernel
 def _node(
-    arclets: Arclets, joints: Joints, runs: Runs, r: int, place: float, distance: float
+    joints: Joints, runs: Runs, r: int, place: float, distance: float
 ) -> tuple[float, float, float, float]:
     """Point and tangent where an arc may end; the run's own ends to the bit."""
     begin, end = runs.first[r], runs.first[r + 1]
-    x, y, tx, ty, _, _ = run_point(arclets, joints, runs, begin, place, distance)
+    x, y, tx, ty, _, _ = run_point(joints, runs, begin, place, distance)
     if place == 0.0:
         x, y = runs.start[begin, 0], runs.start[begin, 1]
     elif place == end - begin:
         x, y = runs.end[end - 1, 0], runs.end[end - 1, 1]
         if runs.closed[r]:
-            _, _, tx, ty, _, _ = run_point(arclets, joints, runs, begin, 0.0, distance)
+            _, _, tx, ty, _, _ = run_point(joints, runs, begin, 0.0, distance)
     return x, y, tx, ty

@@ -16,7 +16,7 @@ import numpy as np
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Joints, Scratch, Trimming
-from splinesdf.kernels.nearest import closest_on
+from splinesdf.kernels.nearest import closest_on, point_on
 from splinesdf.kernels.parallels import parallel_point
 
 # A point this share of its distance beside the end of an arclet, or more, stays on that side where
@@ -67,7 +67,7 @@ def narrow(
             continue
         if far + reach <= radius:
             return a, b, 0, True
-        px, py = _point_of(arcs, j, t)
+        px, py = point_on(arcs, j, t)
         gx, gy = (x - px) / far, (y - py) / far
         gap, slope = far - radius - grain, gx * tx + gy * ty
         under, over, slack = _second_range(
@@ -175,17 +175,6 @@ def _least_bend(row: Floats, foot: tuple[float, float, float, float], length: fl
         return 0.0
     width = 1.0 + least * (far + length)
     return least / width if width > 0.0 else -np.inf
-
-
-@kernel
-def _point_of(arcs: Floats, i: int, t: float) -> tuple[float, float]:
-    x = y = 0.0
-    if t == 1.0:
-        return arcs[i, 1], arcs[i, 2]
-    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
-        x = (x + arcs[i, k]) * t
-        y = (y + arcs[i, k + 1]) * t
-    return arcs[i, 3] + x, arcs[i, 4] + y
 
 
 @kernel

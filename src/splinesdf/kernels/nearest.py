@@ -137,7 +137,7 @@ def search(
     found = -1
     found_at = 0.0
     for j in range(size):
-        bounds[j] = _capsule_distance(tree, nodes[j], px, py)
+        bounds[j] = capsule_distance(tree, nodes[j], px, py)
     while size > 0:
         size -= 1
         if bounds[size] > best:
@@ -159,8 +159,8 @@ def search(
             continue
         left = node + 1
         right = node + 2 * ((first + end) // 2 - first)
-        near_bound = _capsule_distance(tree, left, px, py)
-        far_bound = _capsule_distance(tree, right, px, py)
+        near_bound = capsule_distance(tree, left, px, py)
+        far_bound = capsule_distance(tree, right, px, py)
         if near_bound > far_bound:
             left, right = right, left
             near_bound, far_bound = far_bound, near_bound
@@ -174,7 +174,8 @@ def search(
 
 
 @kernel
-def _capsule_distance(tree: Floats, node: int, px: float, py: float) -> float:
+def capsule_distance(tree: Floats, node: int, px: float, py: float) -> float:
+    """Nothing under a node of the tree is nearer to a point than this."""
     wx, wy = _from_axis(tree, node, px, py)
     # Far away, rounding in the distance itself could exceed the capsule's own margin.
     return float(math.sqrt(wx * wx + wy * wy) * (2.0 - _SLACK) - tree[node, 5])
@@ -190,7 +191,8 @@ def _from_axis(tree: Floats, node: int, px: float, py: float) -> tuple[float, fl
 
 
 @kernel
-def _point(arcs: Floats, i: int, t: float) -> tuple[float, float]:
+def point_on(arcs: Floats, i: int, t: float) -> tuple[float, float]:
+    """The point of arclet i at a parameter."""
     if t == 1.0:
         return arcs[i, 1], arcs[i, 2]
     x = y = 0.0
@@ -202,7 +204,7 @@ def _point(arcs: Floats, i: int, t: float) -> tuple[float, float]:
 
 @kernel
 def _squared(arcs: Floats, i: int, t: float, px: float, py: float) -> float:
-    x, y = _point(arcs, i, t)
+    x, y = point_on(arcs, i, t)
     return (x - px) * (x - px) + (y - py) * (y - py)
 
 

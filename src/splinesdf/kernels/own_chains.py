@@ -11,20 +11,15 @@ import math
 
 from splinesdf._arrays import Bools, Ints
 from splinesdf._jit import kernel
-from splinesdf._tables import Arclets, Joints, Trimming
+from splinesdf._tables import Joints, Trimming
 
 # How far a chain may turn (radians) and still be called the arclet's own. It must be below pi, by
 # more than an arclet turns.
 _OWN_TURN = 2.0
-# A joint that turns by half a turn within this (radians) is a cusp: branches so close may cross
-# once more, so the offset is compared with the exact distance near them.
-_CUSP = 1e-3
 
 
 @kernel
-def own_chains(
-    arclets: Arclets, joints: Joints, trimming: Trimming, bent: Bools, reach: Ints
-) -> None:
+def own_chains(joints: Joints, trimming: Trimming, bent: Bools, reach: Ints) -> None:
     """Fill which arclets bend too much, and how far each one's own chain reaches.
 
     Parameters
@@ -83,7 +78,7 @@ def own_chains(
             for n in range(2 * size):
                 p = (2 * size - 1 - n if not backward else n) % size
                 i, before = order[first + p], order[first + (p - 1) % size]
-                cusp = max(abs(turn[i]), abs(turn[before])) > math.pi - _CUSP
+                cusp = max(abs(turn[i]), abs(turn[before])) > math.pi - trimming.cusp
                 since = 0 if bent[i] or cusp else since + 1
                 if since <= reach[first + p, backward]:
                     reach[first + p, 2] = 1

@@ -27,7 +27,7 @@ from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Joints, Scratch, Trimming
 from splinesdf.kernels.gaps import gap_at, narrow
-from splinesdf.kernels.nearest import room_to_search, search
+from splinesdf.kernels.nearest import capsule_distance, room_to_search, search
 from splinesdf.kernels.parallels import parallel_point
 
 # Halvings of an arclet to separate where its parallel runs forward from where it runs backward.
@@ -62,7 +62,6 @@ def trim(
     trimming: Trimming,
     bent: Bools,
     reach: Ints,
-    place: Ints,
     elements: Ints,
     spans: Floats,
 ) -> int:
@@ -72,8 +71,6 @@ def trim(
     ----------
     bent, reach : ndarray
         From `own_chains`.
-    place : ndarray, shape (n, 3)
-        Of each arclet: its place in its loop, and the loop's first place and size.
     elements : ndarray, shape (room, 2)
         Filled: the arclet, and 1 for the arc around its end.
     spans : ndarray, shape (room, 2)
@@ -111,7 +108,7 @@ def trim(
                 count = 1
                 parts[0, 0], parts[0, 1] = 0.0, 1.0
                 if not corner and bent[i]:
-                    count = _forward(arcs, joints, trimming, element, parts)
+                    count = _forward(joints, trimming, element, parts)
                 since = total
                 for k in range(count):
                     total = _trim_stretch(
@@ -119,7 +116,6 @@ def trim(
                         joints,
                         trimming,
                         (element, (parts[k, 0], parts[k, 1]), own, compared),
-                        place,
                         (near, stack, scratch),
                         (elements, spans),
                         (since, total),
@@ -128,9 +124,7 @@ def trim(
 
 
 @kernel
-def _forward(
-    arcs: Floats, joints: Joints, trimming: Trimming, element: tuple[int, int], parts: Floats
-) -> int:
+def _forward(joints: Joints, trimming: Trimming, element: tuple[int, int], parts: Floats) -> int:
     """The parts of a bent arclet where its parallel runs forward, in order; how many."""
     i = element[0]
     distance = trimming.distance
@@ -178,7 +172,6 @@ def _trim_stretch(
     joints: Joints,
     trimming: Trimming,
     stretch: tuple[tuple[int, int], tuple[float, float], tuple[int, int, int], bool],
-    place: Ints,
     room: tuple[Ints, Floats, Scratch],
     found: tuple[Ints, Floats],
     counts: tuple[int, int],
@@ -187,7 +180,6 @@ def _trim_stretch(
     element, (start, stop), own, compared = stretch
     near, stack, scratch = room
     since, total = counts
-    arcs, tree = arclets.arcs, arclets.tree
     distance = trimming.distance
     radius, grain = abs(distance), trimming.grain
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = start, stop, -1.0, 0.0
@@ -210,15 +202,14 @@ def _trim_stretch(
             reach = max(reach, math.sqrt((end[0] - x) ** 2 + (end[1] - y) ** 2))
         reach += grain
         if base < 0:
-            scratch.nodes[0] = 0
-            if radius > reach:
-                _, hit, _ = search(tree, arcs, x, y, radius - reach, 1, -1, -1.0, scratch)
-                if hit >= 0:
-                    continue
+            if _is_near(arclets, x, y, radius - reach, scratch):
+                continue
             most = near.shape[0] // 2
             if _COARSE * reach > radius and size + 2 < stack.shape[0] and a < m < b:
                 most = _FEW
-            number = _gather(arclets, x, y, radius + reach, own, place, near, most, scratch)
+            number = _gather(
+                arclets, joints.place, (x, y, radius + reach), own, near, most, scratch
+            )
             if number < 0:
                 stack[size, 0], stack[size, 1], stack[size, 2] = m, b, -1.0
                 stack[size + 1, 0], stack[size + 1, 1], stack[size + 1, 2] = a, m, -1.0
@@ -263,20 +254,19 @@ def _trim_stretch(
 @kernel
 def _gather(
     arclets: Arclets,
-    x: float,
-    y: float,
-    farthest: float,
-    own: tuple[int, int, int],
     place: Ints,
+    disk: tuple[float, float, float],
+    own: tuple[int, int, int],
     near: Ints,
     most: int,
     scratch: Scratch,
 ) -> int:
-    """List the arclets, but for the own chain, that may be nearer than ``farthest``.
+    """List the arclets, but for the own chain, that may reach into a disk: x, y, radius.
 
     How many there are, or -1 if they are more than ``most``.
     """
     tree, nodes = arclets.tree, scratch.nodes
+    x, y, farthest = disk
     first, begin, length = own
     count = 0
     nodes[0] = 0
@@ -284,11 +274,7 @@ def _gather(
     while size > 0:
         size -= 1
         node = nodes[size]
-        wx, wy = x - tree[node, 0], y - tree[node, 1]
-        dx, dy = tree[node, 2], tree[node, 3]
-        share = min(max((wx * dx + wy * dy) * tree[node, 4], 0.0), 1.0)
-        wx, wy = wx - share * dx, wy - share * dy
-        if math.sqrt(wx * wx + wy * wy) - tree[node, 5] > farthest:
+        if capsule_distance(tree, node, x, y) > farthest:
             continue
         lo, hi = int(tree[node, 6]), int(tree[node, 7])
         if hi - lo > 1:

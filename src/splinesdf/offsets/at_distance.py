@@ -10,6 +10,8 @@ import numpy as np
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Runs
 from splinesdf.contour import Contour
+from splinesdf.curves.geometry import angles
+from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops, loops_of
 from splinesdf.offsets.runs import runs_of
@@ -21,8 +23,6 @@ _CLOSER, _ROUNDS = 0.125, 5
 # Arcs nearer to one another than this share of the largest coordinate meet; but arcs that leave a
 # corner side by side are no farther apart, for rounding, up to the second one from it.
 _APART, _FROM_CORNER = 1e-12, 1e-7
-# A corner that turns by half a turn within this (radians) is a cusp.
-_CUSP = 1e-3
 
 
 class Found(NamedTuple):
@@ -32,13 +32,30 @@ class Found(NamedTuple):
     clear: bool  # no two arcs meet but at their ends, and no contour turns back on itself
 
 
-def contours_at(shape: Shape, distance: float, tolerance: float) -> Found | None:
-    """The contours at a distance, or None if trimming leaves ends that do not fit together."""
-    stretches = trimmed(shape, distance, tolerance) if distance else _whole(shape)
-    loops = loops_of(shape, stretches, distance, tolerance)
+def contours_at(
+    shape: Shape, distance: float, tolerance: float, *, shift: float = 0.0
+) -> Found | None:
+    """The contours at a distance, or None if trimming leaves ends that do not fit together.
+
+    Parameters
+    ----------
+    shift : float
+        How much farther out they really are; the tolerance is what is left beside it.
+    """
+    moved = distance + shift
+    stretches = trimmed(shape, moved, tolerance) if moved else _whole(shape)
+    loops = loops_of(shape, stretches, moved, tolerance)
     if loops is None:
         return None
-    return _contours(shape, loops, distance, tolerance)
+    fit = _fit_clear_of_itself(shape, loops, moved, tolerance)
+    if fit is None:
+        return Found([], True)
+    arcs, weights, cuts, clear = fit
+    contours = [
+        Contour(arcs[a:b], weights[a:b], distance=distance, y_down=shape.y_down)
+        for a, b in pairwise(cuts)
+    ]
+    return Found(contours, clear)
 
 
 def _whole(shape: Shape) -> Stretches:
@@ -49,9 +66,12 @@ def _whole(shape: Shape) -> Stretches:
     )
 
 
-def _contours(shape: Shape, loops: Loops, distance: float, tolerance: float) -> Found:
+def _fit_clear_of_itself(
+    shape: Shape, loops: Loops, distance: float, tolerance: float
+) -> tuple[Floats, Floats, Ints, bool] | None:
+    """Arcs, weights, where each loop's arcs start, and whether they are clear; None for none."""
     if len(loops.first) < 2:
-        return Found([], True)
+        return None
     runs, starts = runs_of(shape, loops, distance)
     allowed = np.full(len(runs.kind), tolerance)
     for _ in range(_ROUNDS):
@@ -64,21 +84,14 @@ def _contours(shape: Shape, loops: Loops, distance: float, tolerance: float) -> 
             break
         allowed[meeting] *= _CLOSER
     clear = not len(meeting) and not _turns_back(arcs, following)
-    arcs += shape.boundary.origin
-    contours = [
-        Contour(arcs[a:b], weights[a:b], distance=distance, y_down=shape.y_down)
-        for a, b in pairwise(cuts)
-    ]
-    return Found(contours, clear)
+    return arcs + shape.boundary.origin, weights, cuts, clear
 
 
 def _turns_back(arcs: Floats, following: Ints) -> bool:
     """Whether a contour has a cusp: where the skeleton runs along the level, to rounding."""
     before = arcs[:, 2] - arcs[:, 1]
     after = arcs[following, 1] - arcs[following, 0]
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turn = np.arctan2(cross, np.sum(before * after, axis=1))
-    return bool((np.abs(turn) > np.pi - _CUSP).any())
+    return bool((np.abs(angles(before, after)) > np.pi - CUSP).any())
 
 
 def _fitted(
@@ -91,9 +104,7 @@ def _fitted(
     while True:
         arcs, weights = np.empty((room, 3, 2)), np.empty(room)
         owner = np.empty(room, dtype=np.int64)
-        count = fit_runs(
-            shape.boundary, shape.joints, runs, distance, tolerance, arcs, weights, owner
-        )
+        count = fit_runs(shape.joints, runs, distance, tolerance, arcs, weights, owner)
         if count <= room:
             return arcs[:count], weights[:count], owner[:count]
         room = count

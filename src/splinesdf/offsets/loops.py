@@ -11,9 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.curves.geometry import angles
+from splinesdf.curves.joints import CUSP, cycles
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
-from splinesdf.offsets.trimmed import CUSP, SMOOTH, Stretches, parallels
+from splinesdf.offsets.trimmed import SMOOTH, Stretches, parallels
 
 # Steps of Newton's method from where trimming left two stretches to where they cross.
 _STEPS = 6
@@ -55,11 +57,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
         return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)), 0.0)
     spans = stretches.spans.copy()
     points = np.stack([parallels(shape, stretches.elements, at, distance) for at in spans.T])
-    natural = follows >= 0
-    ends = np.flatnonzero(~natural)
-    led_to = np.zeros(len(follows), dtype=np.bool_)
-    led_to[follows[natural]] = True
-    starts = np.flatnonzero(~led_to)
+    ends, starts = np.flatnonzero(follows < 0), np.flatnonzero(_led_to_by_none(follows))
     farthest = max(tolerance, _SHALLOW * shape.size)
     which = _matched(points[1, ends, :2], points[0, starts, :2], farthest)
     if which is None:
@@ -89,6 +87,13 @@ def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
     return np.where((spans[:, 1] == 1.0) & ~cross, opening[wanted], -1)
 
 
+def _led_to_by_none(follows: Ints) -> Bools:
+    """Which stretches none runs on into."""
+    result = np.ones(len(follows), dtype=np.bool_)
+    result[follows[follows >= 0]] = False
+    return result
+
+
 def _without_wrong_sides(
     shape: Shape, stretches: Stretches, follows: Ints, distance: float
 ) -> tuple[Stretches, Ints]:
@@ -100,10 +105,7 @@ def _without_wrong_sides(
     if (np.abs(shape.joints.turn) > np.pi - CUSP).any():
         asked = np.arange(len(follows))
     else:
-        alone = follows < 0
-        led_to = np.zeros(len(follows), dtype=np.bool_)
-        led_to[follows[~alone]] = True
-        asked = np.flatnonzero(alone | ~led_to)
+        asked = np.flatnonzero((follows < 0) | _led_to_by_none(follows))
         first, last = (
             parallels(shape, stretches.elements[asked], at, distance)[:, :2]
             for at in stretches.spans[asked].T
@@ -216,9 +218,7 @@ def _bridges(
     feet = points[..., :2] - distance * normals
     apart = np.hypot(*(feet[0, other] - feet[1, one]).T)
     before, after = points[1, one, 2:4], points[0, other, 2:4]
-    turn = np.arctan2(
-        before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1)
-    )
+    turn = angles(before, after)
     # Both ends belong to one point of the shape: next to a corner too small for its tangents.
     around = (apart <= _MOVED * tolerance) & (turn * distance > 0.0)
     center = np.where(around[:, None], 0.5 * (feet[0, other] + feet[1, one]), np.nan)
@@ -240,9 +240,7 @@ def _as_loops(
     count = len(follows)
     start, end = points[0, :, :2].copy(), points[1, :, :2].copy()
     # A smooth end is one that runs on: its tangent is that of the next stretch.
-    before, after = points[1, :, 2:4], points[0, follows, 2:4]
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    smooth = (np.abs(cross) <= SMOOTH) & (np.sum(before * after, axis=1) > 0.0)
+    smooth = np.abs(angles(points[1, :, 2:4], points[0, follows, 2:4])) <= SMOOTH
     bridged = bridges[:, 0].astype(np.int64)
     joined = np.ones(count, dtype=np.bool_)
     joined[bridged] = False
@@ -262,27 +260,11 @@ def _as_loops(
         smooth = np.concatenate([smooth, arcs])
         follows = np.concatenate([follows, following])
         follows[bridged] = count + np.arange(len(bridged))
-    order, first = _cycles(follows)
+    order, first = cycles(follows)
     loops = Loops(
         elements[order], spans[order], start[order], end[order], center[order], smooth[order], first
     )
     return _without_specks(loops, least)
-
-
-def _cycles(follows: Ints) -> tuple[Ints, Ints]:
-    """The rows cycle after cycle, and where each cycle starts."""
-    order, first = [], [0]
-    after = follows.tolist()
-    seen = [False] * len(after)
-    for row in range(len(after)):
-        at = row
-        while not seen[at]:
-            seen[at] = True
-            order.append(at)
-            at = after[at]
-        if len(order) > first[-1]:
-            first.append(len(order))
-    return np.array(order, dtype=np.int64), np.array(first, dtype=np.int64)
 
 
 def _without_specks(loops: Loops, least: float) -> Loops:

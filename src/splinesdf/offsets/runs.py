@@ -6,11 +6,13 @@ these stay what they are. Everything else between two of them, or two corners, i
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._tables import Runs
-from splinesdf.curves.kinds import ROUND, STRAIGHT
+from splinesdf._tables import ROUND, STRAIGHT, Runs
+from splinesdf.curves.geometry import angles
 from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops
 from splinesdf.offsets.trimmed import parallels
@@ -37,12 +39,7 @@ def runs_of(shape: Shape, loops: Loops, distance: float) -> tuple[Runs, Ints]:
     round_ = (kind == ROUND) & (kind[after] == ROUND)
     scale = shape.size + abs(distance)
     same &= ~round_ | (np.abs(center[after] - center).max(axis=1) <= _CENTERS_APART * scale)
-    order = np.concatenate(
-        [
-            _turned(np.arange(a, b), same[a:b])
-            for a, b in zip(loops.first[:-1], loops.first[1:], strict=True)
-        ]
-    )
+    order = np.concatenate([_turned(np.arange(a, b), same[a:b]) for a, b in pairwise(loops.first)])
     # Where the loops end, runs do.
     ends = ~same[order]
     ends[loops.first[1:] - 1] = True
@@ -94,11 +91,10 @@ def _sweeps(shape: Shape, loops: Loops, order: Ints, distance: float) -> Floats:
     a, b = (
         parallels(shape, rows[own], loops.spans[order[own], k], distance)[:, 2:4] for k in (0, 1)
     )
-    result[own] = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.sum(a * b, axis=1))
+    result[own] = angles(a, b)
     bridges = np.flatnonzero(np.isfinite(loops.center[order, 0]))
-    a, b = (loops.start[order[bridges]], loops.end[order[bridges]])
-    a, b = a - loops.center[order[bridges]], b - loops.center[order[bridges]]
-    result[bridges] = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.sum(a * b, axis=1))
+    at = order[bridges]
+    result[bridges] = angles(loops.start[at] - loops.center[at], loops.end[at] - loops.center[at])
     corners = rows[:, 1] == 1
     # Around the tip of a cusp rounding may take half a turn for one to the other side.
     result[corners] = np.copysign(result[corners], distance)

@@ -8,8 +8,8 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Trimming
+from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
-from splinesdf.distance import signed_distance
 
 # Rounding in a distance, as a multiple of the largest number around: what is not farther than the
 # distance by more counts as nearer, so that walls just twice the distance apart leave nothing
@@ -21,8 +21,6 @@ _SHORTEST = 1e-3
 # much of the distance, lies along its tangent and does no harm. Larger: tangents jump; smaller:
 # rounding in tangents makes corners.
 SMOOTH = 1e-7
-# Joints that turn by half a turn within this (radians) are tips whose side may be wrong.
-CUSP = 1e-3
 # Room for stretches at first.
 _ROOM = 64
 
@@ -52,38 +50,14 @@ def trimmed(shape: Shape, distance: float, tolerance: float) -> Stretches:
     request = trimming(shape, distance, tolerance)
     count = len(boundary.start)
     bent, reach = np.empty(count, dtype=np.bool_), np.empty((count, 3), dtype=np.int64)
-    own_chains(boundary, joints, request, bent, reach)
-    place = np.empty((count, 3), dtype=np.int64)
-    sizes = np.diff(joints.loops)
-    first = np.repeat(joints.loops[:-1], sizes)
-    place[joints.order] = np.column_stack(
-        [np.arange(count) - first, first, np.repeat(sizes, sizes)]
-    )
+    own_chains(joints, request, bent, reach)
     room = 2 * count + _ROOM
     while True:
         elements, spans = np.empty((room, 2), dtype=np.int64), np.empty((room, 2))
-        found = trim(boundary, joints, request, bent, reach, place, elements, spans)
+        found = trim(boundary, joints, request, bent, reach, elements, spans)
         if found <= room:
-            return _without_wrong_tips(shape, Stretches(elements[:found], spans[:found]), distance)
+            return Stretches(elements[:found], spans[:found])
         room = found
-
-
-def _without_wrong_tips(shape: Shape, stretches: Stretches, distance: float) -> Stretches:
-    """Without arcs around tips of slivers that rounding took for solid, or for hollow."""
-    tips = np.flatnonzero(
-        (stretches.elements[:, 1] == 1)
-        & (np.abs(shape.joints.turn[stretches.elements[:, 0]]) > np.pi - CUSP)
-    )
-    if not len(tips):
-        return stretches
-    points = parallels(
-        shape, stretches.elements[tips], stretches.spans[tips].mean(axis=1), distance
-    )
-    there = signed_distance(shape, points[:, :2] + shape.boundary.origin)
-    wrong = tips[np.sign(there) != np.sign(distance)]
-    return Stretches(
-        np.delete(stretches.elements, wrong, axis=0), np.delete(stretches.spans, wrong, axis=0)
-    )
 
 
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
@@ -99,5 +73,10 @@ def trimming(shape: Shape, distance: float, tolerance: float) -> Trimming:
     """What the kernels must know."""
     size = float(np.abs(shape.boundary.boxes[0]).max()) + abs(distance)
     return Trimming(
-        distance, shape.bends.rows, SMOOTH, _GRAIN * size, max(_SHORTEST * tolerance, _GRAIN * size)
+        distance=distance,
+        bends=shape.bends.rows,
+        smooth=SMOOTH,
+        cusp=CUSP,
+        grain=_GRAIN * size,
+        shortest=max(_SHORTEST * tolerance, _GRAIN * size),
     )
