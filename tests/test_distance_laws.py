@@ -12,26 +12,15 @@ from tests import oracles
 from tests.glyphs import glyphs
 from tests.precise import Bezier, precise_distance
 from tests.real_shapes import around, beside, icons
+from tests.shapes import Loops, rebuilt
 
 # Two distances, each good to 1e-15 of the size; pieces that are moved or cut are rounded as well.
 ROUNDING = 4e-15
 
-Loops = list[list[np.ndarray]]
 GLYPHS = [f"DejaVuSans:{character}" for character in "Ag&Çßé8"]
 ICONS = ["apple", "bug", "cart", "hurricane", "openai", "umbrella-fill"]
 SHAPES = {name: glyphs()[name] for name in GLYPHS} | {name: icons()[name] for name in ICONS}
 names = pytest.mark.parametrize("name", SHAPES)
-
-
-def loops_of(shape: ss.Shape) -> Loops:
-    return [
-        [oracles.piece(shape, i) for i in range(first, last)]
-        for first, last in zip(shape.loops[:-1], shape.loops[1:], strict=True)
-    ]
-
-
-def rebuilt(shape: ss.Shape, change: Callable[[Loops], Loops]) -> ss.Shape:
-    return ss.Shape.from_pieces(change(loops_of(shape)), fill=shape.fill)
 
 
 def probes(shape: ss.Shape) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
 
@@ -17,7 +17,7 @@ from splinesdf.contour import Contour, evaluate
 from tests import oracles
 from tests.glyphs import glyphs
 from tests.mechanical import parts
-from tests.shapes import gamma
+from tests.shapes import Loops, gamma, loops_of, rebuilt
 
 # Share of the size. Two runs may place joints differently: both are within this of the offset.
 TOLERANCE = 1e-5
@@ -26,7 +26,6 @@ TOLERANCE = 1e-5
 # of the length.
 MEASURES = 4.0
 
-Loops = list[list[np.ndarray]]
 NAMES = ["gamma2", "gamma3", "DejaVuSans:g", "slotted link", "involute gear", "ratchet"]
 # Away from where something degenerates, for all of them.
 SHARES = (0.021, -0.017, 0.077)
@@ -46,17 +45,6 @@ def shape_of(name: str) -> ss.Shape:
 def offset_of(name: str, share: float) -> list[Contour]:
     shape = shape_of(name)
     return ss.offset(shape, share * shape.size, tolerance=TOLERANCE * shape.size)
-
-
-def loops_of(shape: ss.Shape) -> Loops:
-    return [
-        [oracles.piece(shape, i) for i in range(first, last)]
-        for first, last in zip(shape.loops[:-1], shape.loops[1:], strict=True)
-    ]
-
-
-def rebuilt(shape: ss.Shape, change: Callable[[Loops], Loops]) -> ss.Shape:
-    return ss.Shape.from_pieces(change(loops_of(shape)), fill=shape.fill)
 
 
 def points_of(contours: Sequence[Contour]) -> np.ndarray:

@@ -30,15 +30,27 @@ def as_points(points: ArrayLike) -> Floats:
     return array
 
 
+def finite(value: float, name: str) -> float:
+    """The value as a finite number, or an `InputError` that names it."""
+    number = _as_number(value, name)
+    if not np.isfinite(number):
+        raise InputError(f"expected a finite {name}, got {number:g}")
+    return number
+
+
 def positive(value: float, name: str) -> float:
     """The value as a finite number above zero, or an `InputError` that names it."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a number for {name}, got {value!r}") from error
+    number = _as_number(value, name)
     if not (np.isfinite(number) and number > 0.0):
         raise InputError(f"expected a positive {name}, got {number:g}")
     return number
+
+
+def _as_number(value: float, name: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected a number for {name}, got {value!r}") from error
 
 
 def largest_coordinate(points: Floats) -> float:

@@ -177,6 +177,11 @@ def box(contours: Iterable[Contour]) -> tuple[float, float, float, float]:
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
+def upright(contour: Contour) -> Contour:
+    """The contour with y pointing up, as in DXF and G-code."""
+    return mirrored(contour) if contour.y_down else contour
+
+
 def mirrored(contour: Contour) -> Contour:
     """The contour with y and its direction reversed: as the other kind of file shows it."""
     # 0 - y, not -y: a zero stays a zero without a sign in front when it is printed.

@@ -26,9 +26,11 @@ _MEASURED = np.linspace(0.0, 1.0, 9)
 # The least tolerance, as a share of the largest number around: a few hundred roundings.
 _LEAST_TOLERANCE = 1e-13
 # Where rounding decides, as where walls are just twice the distance apart and parallels run on top
-# of each other, it does not at a distance that differs by such a share of the tolerance. Larger:
-# less of the tolerance is left for the arcs.
-_SHIFTS = (0.0, 0.125, -0.125, 0.25, -0.25)
+# of each other, it does not a little farther from the boundary: by this share of the largest
+# number around, and if that is still too near, by these shares of the tolerance. Smaller: rounding
+# decides there, too; larger: what is exact is off by as much, and the arcs get less.
+_FARTHER = 1e-12
+_SHARES = (0.125, 0.25)
 
 
 def offset(
@@ -117,9 +119,9 @@ def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[
 def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
     """The contours at one distance."""
     best = None
-    for share in _SHIFTS if distance else (0.0,):
-        shift = math.copysign(share * tolerance, distance)
-        found = contours_at(shape, distance, (1.0 - abs(share)) * tolerance, shift=shift)
+    for farther in _shifts(shape, distance, tolerance):
+        shift = math.copysign(farther, distance)
+        found = contours_at(shape, distance, tolerance - farther, shift=shift)
         best = found if best is None or (found and found.clear) else best
         if best is not None and best.clear:
             break
@@ -129,6 +131,15 @@ def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
     # a spline has none, whatever it is a fit of.
     fitted = fit(shape, tolerance=tolerance, band=(distance, distance))
     return fitted.spline.contours(distance)
+
+
+def _shifts(shape: Shape, distance: float, tolerance: float) -> list[float]:
+    """How much farther from the boundary to look, one after the other."""
+    if not distance:
+        return [0.0]
+    shares = [share * tolerance for share in _SHARES]
+    least = _FARTHER * max(*map(abs, shape.box), abs(distance))
+    return [0.0, *([least] if least < shares[0] else []), *shares]
 
 
 def deviation(shape: Shape, contours: Iterable[Contour]) -> float:

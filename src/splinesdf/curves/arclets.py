@@ -44,7 +44,10 @@ _NO_STEP = 64 * 2.220446049250313e-16
 class Arcs(NamedTuple):
     """Some arcs of one degree, and where they come from."""
 
-    control: Floats  # (n, degree + 1, 2)
+    # (n, degree + 1, 2) less a point of each one's piece, such as its cusp: near to that, numbers
+    # are as good as they are small, and directions no rounding.
+    control: Floats
+    start: Floats  # (n, 2) where the first of them lies
     piece: Ints  # (n,) which piece of the shape
     interval: Floats  # (n, 2) the parameters of that piece at the arc's start and end
 
@@ -59,25 +62,27 @@ class Runs(NamedTuple):
 
 def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
     """Cut the pieces of a shape (see `Shape`) into arclets and put the tree over them."""
-    corners = control[starts[:-1]]
     origin = 0.5 * (control.min(axis=0) + control.max(axis=0))
     degrees = np.diff(starts) - 1
     groups = []
     for degree in np.unique(degrees):
         chosen = np.flatnonzero(degrees == degree)
-        arcs = control[starts[chosen][:, None] + np.arange(degree + 1)] - origin
+        arcs = control[starts[chosen][:, None] + np.arange(degree + 1)]
         interval = np.broadcast_to([0.0, 1.0], (len(arcs), 2)).copy()
-        cut = _cut(Arcs(arcs, chosen, interval))
-        # Where a piece begins, take the piece's own first point: the cut must not move it.
-        fresh = cut.interval[:, 0] == 0.0
-        cut.control[fresh, 0] = corners[cut.piece[fresh]] - origin
-        groups.append(cut)
+        first = arcs[:, 0] - origin
+        groups.append(_cut(Arcs(arcs - _slow_ends(arcs), first, chosen, interval)))
     piece = np.concatenate([group.piece for group in groups])
     order = np.lexsort((np.concatenate([group.interval[:, 0] for group in groups]), piece))
     place = np.empty(len(piece), dtype=np.int64)
     place[order] = np.arange(len(piece))
     label = np.searchsorted(loops, piece, side="right") - 1
     return assemble(groups, Runs(label, place, np.ones(len(loops) - 1, dtype=bool)), origin)
+
+
+def _slow_ends(arcs: Floats) -> Floats:
+    """The end of each arc at which it is slower, and has its cusp if it has one: (n, 1, 2)."""
+    first, last = (np.abs(arcs[:, a] - arcs[:, b]).max(axis=1) for a, b in ((0, 1), (-1, -2)))
+    return np.where((first <= last)[:, None, None], arcs[:, :1], arcs[:, -1:])
 
 
 def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
@@ -95,15 +100,15 @@ def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
     degree = np.concatenate(
         [np.full(len(arcs.control), arcs.control.shape[1] - 1, dtype=np.int64) for arcs in groups]
     )
-    start = np.concatenate([arcs.control[:, 0] for arcs in groups])
-    end = np.concatenate([arcs.control[:, -1] for arcs in groups])
+    start = np.concatenate([arcs.start for arcs in groups])
+    end = np.concatenate([ends(arcs) for arcs in groups])
     order = np.lexsort((runs.place, _near_ones_together(start, runs.label)[runs.label]))
     label = runs.label[order]
     following = _following(label, runs.closed)
     start, end = start[order], end[order]
     end = np.where((following >= 0)[:, None], start[following], end)
     most = int(degree.max())
-    padded = [_tables(arcs.control, most) for arcs in groups]
+    padded = [_tables(arcs, most) for arcs in groups]
     power, bernstein, boxes, radius = (
         np.ascontiguousarray(np.concatenate(column)[order]) for column in zip(*padded, strict=True)
     )
@@ -173,7 +178,7 @@ def _cut(arcs: Arcs) -> Arcs:
     """Split pieces of one degree: where x or y turns first, then until they are thin."""
     if arcs.control.shape[1] == 2:
         return arcs
-    noise = _NO_STEP * float(np.abs(arcs.control).max())
+    noise = _NO_STEP * float(np.maximum(np.abs(arcs.start), np.abs(ends(arcs))).max())
     for axis in (0, 1):
         arcs = _split_turns(arcs, axis, noise)
     # Two turns in one place, as in a cusp, leave a part between them that is all rounding.
@@ -208,7 +213,8 @@ def _split_turns(arcs: Arcs, axis: int, noise: float) -> Arcs:
 
 
 def _take(arcs: Arcs, chosen: Bools) -> Arcs:
-    return Arcs(arcs.control[chosen], arcs.piece[chosen], arcs.interval[chosen])
+    control, start, piece, interval = arcs
+    return Arcs(control[chosen], start[chosen], piece[chosen], interval[chosen])
 
 
 def _join(parts: list[Arcs]) -> Arcs:
@@ -228,8 +234,10 @@ def split(arcs: Arcs, at: float | Floats) -> Arcs:
         first[:, k] = points[:, 0]
         second[:, last - k] = points[:, -1]
         points = (1.0 - t)[:, None, None] * points[:, :-1] + t[:, None, None] * points[:, 1:]
+    between = arcs.start + (second[:, 0] - first[:, 0])
     return Arcs(
         np.concatenate([first, second]),
+        np.concatenate([arcs.start, between]),
         np.concatenate([arcs.piece, arcs.piece]),
         np.concatenate(
             [
@@ -238,6 +246,11 @@ def split(arcs: Arcs, at: float | Floats) -> Arcs:
             ]
         ),
     )
+
+
+def ends(arcs: Arcs) -> Floats:
+    """Where the last control points lie: (n, 2)."""
+    return np.asarray(arcs.start + (arcs.control[:, -1] - arcs.control[:, 0]))
 
 
 def _turn(slope: Floats) -> Floats:
@@ -287,10 +300,10 @@ def _most_bent(arcs: Floats) -> Floats:
     return np.asarray(np.maximum(high, -low) * np.hypot(chord[:, 0], chord[:, 1]))
 
 
-def _tables(arcs: Floats, most: int) -> tuple[Floats, Floats, Floats, Floats]:
+def _tables(arcs: Arcs, most: int) -> tuple[Floats, Floats, Floats, Floats]:
     """Power basis, Bernstein coefficients (n, 3, 2 most + 1), boxes, thickness; padded."""
-    count, d = len(arcs), arcs.shape[1] - 1
-    local = arcs - arcs[:, :1]
+    count, d = len(arcs.control), arcs.control.shape[1] - 1
+    local = arcs.control - arcs.control[:, :1]
     power = np.zeros((count, most + 1, 2))
     for k in range(1, d + 1):
         # forward differences: the k-th power coefficient is binom(d, k) times the k-th of them
@@ -301,5 +314,6 @@ def _tables(arcs: Floats, most: int) -> tuple[Floats, Floats, Floats, Floats]:
             weight = math.comb(d, i) * math.comb(d, k - i) / math.comb(2 * d, k)
             bernstein[:, :2, k] += weight * local[:, i]
             bernstein[:, 2, k] += weight * np.sum(local[:, i] * local[:, k - i], axis=1)
-    boxes = np.concatenate([arcs.min(axis=1), arcs.max(axis=1)], axis=1)
-    return power, bernstein, boxes, thickness(arcs)
+    boxes = np.tile(arcs.start, 2)
+    boxes += np.concatenate([local.min(axis=1), local.max(axis=1)], axis=1)
+    return power, bernstein, boxes, thickness(local)

@@ -10,7 +10,7 @@ import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets
-from splinesdf.curves.arclets import Arcs, Runs, assemble, split
+from splinesdf.curves.arclets import Arcs, Runs, assemble, ends, split
 from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import tangents_at
 from splinesdf.curves.parts import MERGE, Parts, cut_at_crossings
@@ -65,12 +65,14 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
     for d in np.unique(degree[parts.arclet[kept]]):
         rows = np.flatnonzero(kept & (degree[parts.arclet] == d))
         arclet = parts.arclet[rows]
-        control = control_points(outline.power[arclet, : d + 1]) + outline.start[arclet, None]
-        control[:, -1] = outline.end[arclet]
+        control, start = control_points(outline.power[arclet, : d + 1]), outline.start[arclet]
         arcs = _restrict(
-            Arcs(control, outline.piece[arclet], outline.interval[arclet]), parts.interval[rows]
+            Arcs(control, start, outline.piece[arclet], outline.interval[arclet]),
+            parts.interval[rows],
         )
         turned = ~left[parts.chain[rows]]
+        whole = parts.interval[rows, 1] == 1.0
+        arcs.start[turned] = np.where(whole[:, None], outline.end[arclet], ends(arcs))[turned]
         arcs.control[turned] = arcs.control[turned, ::-1]
         arcs.interval[turned] = arcs.interval[turned, ::-1]
         groups.append(arcs)
@@ -90,13 +92,14 @@ def _restrict(arcs: Arcs, interval: Floats) -> Arcs:
     """The parts of arcs between two parameters each."""
     low, high = interval.T
     count = len(low)
-    result = Arcs(arcs.control.copy(), arcs.piece, arcs.interval.copy())
+    result = Arcs(arcs.control.copy(), arcs.start.copy(), arcs.piece, arcs.interval.copy())
     for at, part, whole in (
         (high, slice(0, count), high == 1.0),
         (low / high, slice(count, None), low == 0.0),
     ):
         cut = split(result, at)
         result.control[~whole] = cut.control[part][~whole]
+        result.start[~whole] = cut.start[part][~whole]
         result.interval[~whole] = cut.interval[part][~whole]
     return result
 

@@ -75,6 +75,16 @@ def narrow(
         )
         if gap + abs(slope) * length + 0.5 * max(over, 0.0) * length * length <= 0.0:
             return a, b, 0, True
+        if gap <= 0.0 and _stays_nearer(
+            arcs,
+            trimming.bends[j],
+            j,
+            (far, gx, gy, t),
+            (tx, ty, least, most),
+            (gap, slope),
+            length,
+        ):
+            return a, b, 0, True
         steepest = abs(slope) + slack
         lowest = gap - steepest * length + 0.5 * min(under, 0.0) * length * length
         if under > 0.0 and steepest < under * length:
@@ -97,6 +107,57 @@ def narrow(
         near[top + left] = j
         left += 1
     return low, high, left, not low < high
+
+
+@kernel
+def _stays_nearer(
+    arcs: Floats,
+    row: Floats,
+    j: int,
+    foot: tuple[float, float, float, float],
+    along: tuple[float, float, float, float],
+    now: tuple[float, float],
+    length: float,
+) -> bool:
+    """Whether the gap to an arclet stays below zero, as its foot stays within the arclet.
+
+    As in `_second_range`, but with the largest curvature of the wall's own distance instead of that
+    of a point's. Walls just twice the distance apart have a gap of a few roundings all along: the
+    point's would halve them into a million stretches.
+    """
+    far, gx, gy, t = foot
+    tx, ty, least, most = along
+    gap, slope = now
+    vx, vy = row[5] + row[7], row[6] + row[8]
+    right = gx * vy - gy * vx
+    if abs(right) <= _BESIDE * math.sqrt(vx * vx + vy * vy) or far <= 2.0 * length:
+        return False
+    low, high = (row[0], row[1]) if right > 0.0 else (-row[1], -row[0])
+    if not (-np.inf < min(low, least) and max(high, most) < np.inf):
+        return False
+    # Curvatures of the wall's level sets are kappa / (1 + kappa u), which increase with kappa.
+    width = 1.0 + min(low * (far + length), 0.0)
+    if width <= 0.0:
+        return False
+    # The foot moves by no more than this, and its way to an end is no shorter than the chord.
+    travel = length / width
+    px, py = point_on(arcs, j, t)
+    for k in (1, 3):
+        if math.sqrt((px - arcs[j, k]) ** 2 + (py - arcs[j, k + 1]) ** 2) <= travel:
+            return False
+    h_low, h_high = low / width, high / (1.0 + high * (far - length))
+    # how much the angle between g and T changes
+    change = (max(abs(h_low), abs(h_high)) + max(abs(least), abs(most))) * length
+    side = gy * tx - gx * ty
+    # |g.n| is between u and 1, and the second derivative at most h_high u^2 + bend u.
+    u = abs(side) * (1.0 - 0.5 * change * change) - abs(slope) * change
+    if u <= 0.0:
+        return False
+    bend = most if side > 0.0 else -least
+    over = max(h_high * u * u + bend * u, h_high + bend)
+    if h_high < 0.0 and 2.0 * abs(h_high) * u < bend < 2.0 * abs(h_high):
+        over = max(over, -0.25 * bend * bend / h_high)
+    return bool(gap + abs(slope) * length + 0.5 * max(over, 0.0) * length * length <= 0.0)
 
 
 @kernel

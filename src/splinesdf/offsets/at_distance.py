@@ -43,19 +43,22 @@ def contours_at(
         How much farther out they really are; the tolerance is what is left beside it.
     """
     moved = distance + shift
-    stretches = trimmed(shape, moved, tolerance) if moved else _whole(shape)
+    # Moved by little, walls that were just twice the distance apart end in two crossings close to
+    # each other: trimming must tell them apart.
+    stretches = trimmed(shape, moved, abs(shift) or tolerance) if moved else _whole(shape)
     loops = loops_of(shape, stretches, moved, tolerance)
     if loops is None:
         return None
     fit = _fit_clear_of_itself(shape, loops, moved, tolerance)
     if fit is None:
         return Found([], True)
-    arcs, weights, cuts, clear = fit
+    arcs, weights, cuts, clear, backward = fit
     contours = [
         Contour(arcs[a:b], weights[a:b], distance=distance, y_down=shape.y_down)
         for a, b in pairwise(cuts)
     ]
-    return Found(contours, clear)
+    # Moved, nothing runs back along itself: what turns back are tips, nearly as sharp as cusps.
+    return Found(contours, clear and not (backward and shift == 0.0))
 
 
 def _whole(shape: Shape) -> Stretches:
@@ -68,8 +71,8 @@ def _whole(shape: Shape) -> Stretches:
 
 def _fit_clear_of_itself(
     shape: Shape, loops: Loops, distance: float, tolerance: float
-) -> tuple[Floats, Floats, Ints, bool] | None:
-    """Arcs, weights, where each loop's arcs start, and whether they are clear; None for none."""
+) -> tuple[Floats, Floats, Ints, bool, bool] | None:
+    """Arcs, weights, where each loop's arcs start, whether none meet, whether one turns back."""
     if len(loops.first) < 2:
         return None
     runs, starts = runs_of(shape, loops, distance)
@@ -83,8 +86,8 @@ def _fit_clear_of_itself(
         if not len(meeting):
             break
         allowed[meeting] *= _CLOSER
-    clear = not len(meeting) and not _turns_back(arcs, following)
-    return arcs + shape.boundary.origin, weights, cuts, clear
+    arcs += shape.boundary.origin
+    return arcs, weights, cuts, not len(meeting), _turns_back(arcs, following)
 
 
 def _turns_back(arcs: Floats, following: Ints) -> bool:

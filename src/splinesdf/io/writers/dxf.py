@@ -11,7 +11,7 @@ import numpy as np
 
 from splinesdf.biarcs import as_arcs
 from splinesdf.conics import Element, Kind, elements
-from splinesdf.contour import Contour, box, mirrored
+from splinesdf.contour import Contour, box, upright
 from splinesdf.errors import MissingExtraError
 from splinesdf.io.writers.options import Options
 
@@ -43,15 +43,15 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
     document.header["$INSUNITS"] = _UNITS[options.units]
     document.header["$MEASUREMENT"] = 0 if options.units == "inch" else 1
     space = document.modelspace()
-    upright = [mirrored(contour) if contour.y_down else contour for contour in contours]
-    for chain in upright:
+    chains = [upright(contour) for contour in contours]
+    for chain in chains:
         layer = f"distance_{float(chain.distance) + 0.0!r}"  # + 0.0 turns -0.0 into 0.0
         if layer not in document.layers:
             document.layers.add(layer)
         drawn = as_arcs(chain, tolerance=options.tolerance) if options.arcs else chain
         _add(space, drawn, {"layer": layer})
     # So that a viewer opens on the drawing, not on the origin.
-    xmin, ymin, xmax, ymax = box(upright)
+    xmin, ymin, xmax, ymax = box(chains)
     document.set_modelspace_vport(
         height=1.1 * max(xmax - xmin, ymax - ymin),
         center=(0.5 * (xmin + xmax), 0.5 * (ymin + ymax)),

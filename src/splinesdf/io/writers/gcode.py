@@ -18,7 +18,7 @@ import numpy as np
 
 from splinesdf.biarcs import as_arcs
 from splinesdf.conics import Element, Kind, elements
-from splinesdf.contour import Contour, mirrored
+from splinesdf.contour import Contour, upright
 from splinesdf.io.writers.options import Milling, Options
 
 # The last digit is a hundredth to a thousandth of the tolerance, and never coarser than this many
@@ -92,8 +92,7 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
 
 def _path(contour: Contour, tolerance: float, direction: str) -> _Path:
     """The contour with y up, and what stays on the right (climb) or on the left."""
-    upright = mirrored(contour) if contour.y_down else contour
-    pieces = elements(as_arcs(upright, tolerance=tolerance))
+    pieces = elements(as_arcs(upright(contour), tolerance=tolerance))
     # Contours have the side nearer to the inside on their left, where x turns into y; a mirror
     # changes sides. The shape is inside, and it stays if the way is around it.
     inside_on_left = not contour.y_down

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from splinesdf._arrays import positive
+from splinesdf._arrays import finite, positive
 from splinesdf.errors import InputError
 
 UNITS = ("mm", "inch")
@@ -47,13 +47,13 @@ class Milling:
         if self.feed is not None:
             positive(self.feed, "feed")
         positive(self.safe_height, "safe height")
-        depth = _number(self.depth, "depth")
+        depth = finite(self.depth, "depth")
         if depth < 0.0:
             raise InputError(f"expected a depth below the surface, 0 or more, got {depth:g}")
         if not isinstance(self.start, tuple | list | np.ndarray) or len(self.start) != 2:
             raise InputError(f"expected two numbers for start, got {self.start!r}")
         for value in self.start:
-            _number(value, "start")
+            finite(value, "start")
         if self.direction not in DIRECTIONS:
             raise InputError(f"expected climb or conventional, got {self.direction!r}")
 
@@ -86,13 +86,3 @@ def check_options(suffix: str, **given: Any) -> None:
 
 GCODE = frozenset({".nc", ".ngc", ".gcode"})
 _USE = {"arcs": GCODE | {".dxf", ".svg"}, "units": GCODE | {".dxf"}, "milling": GCODE}
-
-
-def _number(value: float, name: str) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a number for {name}, got {value!r}") from error
-    if not np.isfinite(number):
-        raise InputError(f"expected a finite {name}, got {number:g}")
-    return number

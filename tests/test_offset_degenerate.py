@@ -1,0 +1,60 @@
+"""Distances at which something degenerates exactly, and curves that begin with a cusp."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import splinesdf as ss
+from benchmarks.offset_sweep import EXACT
+from splinesdf.curves.geometry import angles, tangents_at
+from splinesdf.offsets.trimmed import trimmed
+from tests.mechanical import AWKWARD, parts
+from tests.offset_checks import judge
+
+CASES = [(name, distance) for name, some in AWKWARD.items() for distance in some]
+
+
+@pytest.mark.parametrize(("name", "distance"), CASES)
+def test_what_is_left_where_walls_are_twice_the_distance_apart_is_exact(
+    name: str, distance: float
+) -> None:
+    shape = parts()[name]
+    for share in (1e-3, 1e-8):
+        tolerance = share * shape.size
+        contours = ss.offset(shape, distance, tolerance=tolerance)
+        # The number of loops hangs on rounding here: `test_offset_sweep` counts elsewhere.
+        verdict = judge(shape, contours, distance, tolerance, counts=[len(contours)])
+        assert verdict.failures == []
+        assert verdict.deviation < EXACT * shape.size
+
+
+@pytest.mark.parametrize("name", ["T-slot profile", "gasket", "slotted link"])
+def test_walls_twice_the_distance_apart_are_not_cut_to_pieces(name: str) -> None:
+    # Neither where both are straight nor where they are parts of circles about one center.
+    shape = parts()[name]
+    for distance in AWKWARD[name]:
+        found = trimmed(shape, distance, 1e-8 * shape.size)
+        assert len(found.spans) < 4 * len(shape.boundary.start)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.0])
+@pytest.mark.parametrize("reverse", [False, True])
+def test_tangents_next_to_half_a_cusp_are_no_rounding(angle: float, reverse: bool) -> None:
+    # An involute, far from the origin: it starts with a velocity of 0 and bends without bound.
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, s], [-s, c]])
+    flank = ss.Shape.from_formulas(
+        [("cos(t) + t*sin(t)", "sin(t) - t*cos(t)", (0.0, 1.2))], close=True
+    )
+    pieces = [flank.piece(i) @ turn + 10.0 for i in range(flank.piece_count)]
+    if reverse:
+        pieces = [piece[::-1] for piece in pieces[::-1]]
+    boundary = ss.Shape.from_pieces([pieces]).boundary
+    ahead = boundary.following
+    arclets = np.flatnonzero(boundary.piece == boundary.piece[ahead])
+    one = tangents_at(boundary, arclets, np.ones(len(arclets)))
+    other = tangents_at(boundary, ahead[arclets], np.zeros(len(arclets)))
+    assert len(arclets) > 10
+    # Control points rounded to 1e-15 bend the curve by this much, next to its tip.
+    assert np.abs(angles(one, other)).max() < 1e-9
