@@ -63,9 +63,9 @@ class Contour:
             raise InputError("expected finite control points and weights, got NaN or infinity")
         if not (self.weights > 0.0).all():
             raise InputError(f"expected positive weights, got {self.weights.min():.6g}")
-        if not np.array_equal(self.arcs[:-1, 2], self.arcs[1:, 0]):
+        if not (self.arcs[:-1, 2] == self.arcs[1:, 0]).all():
             raise InputError("expected each arc to start exactly where the last one ended")
-        if self.closed and not np.array_equal(self.arcs[-1, 2], self.arcs[0, 0]):
+        if self.closed and not (self.arcs[-1, 2] == self.arcs[0, 0]).all():
             raise InputError("expected a closed contour to end exactly where it starts")
 
     def points(self, tolerance: float) -> Floats:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats
+from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf.contour import Contour
 
 
@@ -35,7 +35,8 @@ def nested(contours: Sequence[Contour]) -> list[Contour]:
         if contour.closed:
             may = np.flatnonzero(np.all((low[i] <= first) & (first <= high[i]), axis=1))
             may = may[may != i]
-            encloses[i, may] = enclosed(contour, first[may])
+            if len(may):
+                encloses[i, may] = enclosed(contour, first[may])
     # The depth grows by one from a contour to those directly inside it.
     depth = encloses.sum(axis=0)
     result: list[Contour | None] = [None] * count
@@ -56,36 +57,36 @@ def enclosed(contour: Contour, points: Floats) -> Bools:
     The exact crossings of the ray to the right are counted. Which arcs cross follows from the
     signs at their ends, which neighbors share to the bit, so that none is counted twice.
     """
-    result = np.zeros(len(points), dtype=np.bool_)
-    for k, point in enumerate(points):
-        result[k] = _crossings_to_the_right(contour.arcs - point, contour.weights) % 2 == 1
-    return result
+    low, high = contour.arcs.min(axis=1), contour.arcs.max(axis=1)
+    right, below, above = high[:, 0], low[:, 1], high[:, 1]
+    # Of most arcs the control points show that the ray passes them by.
+    near = [np.flatnonzero((below <= y) & (y <= above) & (x <= right)) for x, y in points]
+    of_point, of_arc = np.repeat(np.arange(len(points)), [*map(len, near)]), np.concatenate(near)
+    arcs = contour.arcs[of_arc] - points[of_point, None]
+    crossings = _crossings_to_the_right(arcs, contour.weights[of_arc])
+    return np.asarray(np.bincount(of_point, crossings, len(points)) % 2 == 1)
 
 
-def _crossings_to_the_right(arcs: Floats, weights: Floats) -> int:
-    """How often arcs cross the positive x axis."""
+def _crossings_to_the_right(arcs: Floats, weights: Floats) -> Ints:
+    """How often each arc crosses the positive x axis: (n, 3, 2) -> (n,)."""
     # The numerator of y in Bernstein form: its roots are where an arc crosses the axis.
     p, q, r = arcs[:, 0, 1], weights * arcs[:, 1, 1], arcs[:, 2, 1]
     differ = (p < 0.0) != (r < 0.0)
-    # With both ends on one side there may be two crossings: a parabola through the axis.
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.sqrt(np.maximum(q * q - p * r, 0.0))
+        # With both ends on one side there may be two crossings: a parabola through the axis.
         dips = ~differ & (q * q > p * r) & (np.where(p < 0.0, -q, q) < 0.0)
         # t / (1 - t) = s with p + 2 q s + r s² = 0, in forms that do not cancel.
         big = -(q + np.where(q < 0.0, -root, root))
         first, second = p / big, big / r
-        total = 0
-        for s, one in ((first, differ & (first >= 0.0)), (second, differ & ~(first >= 0.0))):
-            total += _right_of_zero(arcs, weights, s, one)
-        for s in (first, second):
-            total += _right_of_zero(arcs, weights, s, dips)
-    return total
+        is_first = first >= 0.0
+        result = (dips | (differ & is_first)) & _right_of_zero(arcs, weights, first)
+        other = (dips | (differ & ~is_first)) & _right_of_zero(arcs, weights, second)
+    return np.asarray(result.astype(np.int64) + other)
 
 
-def _right_of_zero(arcs: Floats, weights: Floats, s: Floats, which: Bools) -> int:
-    """How many of the chosen points, at t / (1 - t) = s, have a positive x."""
-    s = s[which]
-    x = arcs[which, 0, 0] + s * (2.0 * weights[which] * arcs[which, 1, 0] + s * arcs[which, 2, 0])
+def _right_of_zero(arcs: Floats, weights: Floats, s: Floats) -> Bools:
+    """Whether points at t / (1 - t) = s have a positive x."""
+    x = arcs[:, 0, 0] + s * (2.0 * weights * arcs[:, 1, 0] + s * arcs[:, 2, 0])
     # For s beyond all bounds that is the end of the arc.
-    far = ~np.isfinite(x)
-    return int(np.count_nonzero(np.where(far, arcs[which, 2, 0], x) > 0.0))
+    return np.asarray(np.where(np.isfinite(x), x, arcs[:, 2, 0]) > 0.0)

@@ -9,6 +9,7 @@ d kappa / ds are all that bounds of a distance's derivatives need.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -93,13 +94,11 @@ def _curvatures(control: Floats) -> Floats:
     """
     count, d = len(control), control.shape[1] - 1
     result = np.empty((count, 5))
-    low, high, slope = np.full(count, np.inf), np.full(count, -np.inf), np.zeros(count)
-    for part in range(_PARTS):
-        piece = _restricted(control, part / _PARTS, (part + 1) / _PARTS)
-        part_low, part_high, part_slope = curvature_ranges(piece)
-        low, high = np.minimum(low, part_low), np.maximum(high, part_high)
-        slope = np.maximum(slope, part_slope)
-    result[:, 0], result[:, 1], result[:, 2] = low, high, slope
+    pieces = _in_parts(d) @ control.transpose(1, 2, 0).reshape(d + 1, -1)
+    pieces = pieces.reshape(_PARTS, d + 1, 2, count).transpose(1, 2, 0, 3).reshape(d + 1, 2, -1)
+    low, high, slope = (values.reshape(_PARTS, count) for values in _ranges(pieces))
+    result[:, 0], result[:, 1] = low.min(axis=0), high.max(axis=0)
+    result[:, 2] = slope.max(axis=0)
     for column, ends in ((3, control), (4, control[:, ::-1])):
         first = d * (ends[:, 1] - ends[:, 0])
         second = d * (d - 1) * (ends[:, 2] - 2.0 * ends[:, 1] + ends[:, 0])
@@ -125,25 +124,30 @@ def curvature_ranges(control: Floats) -> tuple[Floats, Floats, Floats]:
     -------
     low, high, change : ndarray, shape (n,)
     """
+    return _ranges(np.ascontiguousarray(control.transpose(1, 2, 0)))
+
+
+def _ranges(control: Floats) -> tuple[Floats, Floats, Floats]:
+    """As `curvature_ranges`, of arcs (d + 1, 2, n): sums of coefficients are sums of long rows."""
     first = _derivative(control)
     second = _derivative(first)
     third = _derivative(second)
-    cross = _product(first[..., 0], second[..., 1]) - _product(first[..., 1], second[..., 0])
-    noise = _SLACK * np.abs(first).max(axis=(1, 2)) * np.abs(second).max(axis=(1, 2))
-    cross_low, cross_high = cross.min(axis=1) - noise, cross.max(axis=1) + noise
-    squared = _product(first[..., 0], first[..., 0]) + _product(first[..., 1], first[..., 1])
-    speed_low = squared.min(axis=1) - _SLACK * squared.max(axis=1)
-    speed_high = squared.max(axis=1) * (1.0 + _SLACK)
-    cross_third = _product(first[..., 0], third[..., 1]) - _product(first[..., 1], third[..., 0])
-    along = _product(first[..., 0], second[..., 0]) + _product(first[..., 1], second[..., 1])
+    cross = _product(first[:, 0], second[:, 1]) - _product(first[:, 1], second[:, 0])
+    noise = _SLACK * np.abs(first).max(axis=(0, 1)) * np.abs(second).max(axis=(0, 1))
+    cross_low, cross_high = cross.min(axis=0) - noise, cross.max(axis=0) + noise
+    squared = _product(first[:, 0], first[:, 0]) + _product(first[:, 1], first[:, 1])
+    speed_low = squared.min(axis=0) - _SLACK * squared.max(axis=0)
+    speed_high = squared.max(axis=0) * (1.0 + _SLACK)
+    cross_third = _product(first[:, 0], third[:, 1]) - _product(first[:, 1], third[:, 0])
+    along = _product(first[:, 0], second[:, 0]) + _product(first[:, 1], second[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         slowest = np.where(speed_low > 0.0, speed_low, 0.0) ** 1.5
         fastest = speed_high**1.5
         low = cross_low / np.where(cross_low < 0.0, slowest, fastest)
         high = cross_high / np.where(cross_high > 0.0, slowest, fastest)
         # d kappa / dt = (c' x c''') / |c'|^3 - 3 (c' x c'') (c' . c'') / |c'|^5
-        change = np.abs(cross_third).max(axis=1) * (1.0 + _SLACK) / slowest
-        both = np.maximum(np.abs(cross_low), np.abs(cross_high)) * np.abs(along).max(axis=1)
+        change = np.abs(cross_third).max(axis=0) * (1.0 + _SLACK) / slowest
+        both = np.maximum(np.abs(cross_low), np.abs(cross_high)) * np.abs(along).max(axis=0)
         change += 3.0 * (1.0 + _SLACK) * both / (slowest * speed_low)
         change /= np.sqrt(np.where(speed_low > 0.0, speed_low, 0.0))
     standing = speed_low <= 0.0
@@ -154,36 +158,45 @@ def curvature_ranges(control: Floats) -> tuple[Floats, Floats, Floats]:
     )
 
 
-def _derivative(control: Floats) -> Floats:
-    degree = control.shape[1] - 1
+def _derivative(points: Floats) -> Floats:
+    """Control points of the derivatives: (d + 1, 2, n) -> (d, 2, n), but (1, 2, n) for d = 0."""
+    degree = len(points) - 1
     if degree == 0:
-        return np.zeros_like(control)
-    return np.asarray(degree * np.diff(control, axis=1))
+        return np.zeros_like(points)
+    return np.asarray(degree * np.diff(points, axis=0))
 
 
 def _product(one: Floats, other: Floats) -> Floats:
-    """Bernstein coefficients (n, a + b + 1) of products of polynomials (n, a + 1), (n, b + 1)."""
-    a, b = one.shape[1] - 1, other.shape[1] - 1
-    result = np.zeros((len(one), a + b + 1))
+    """Bernstein coefficients (a + b + 1, n) of products of polynomials (a + 1, n), (b + 1, n)."""
+    a, b = len(one) - 1, len(other) - 1
+    result = np.zeros((a + b + 1, one.shape[1]))
+    scaled = other * _binomials(b)
     for i in range(a + 1):
-        for j in range(b + 1):
-            weight = math.comb(a, i) * math.comb(b, j) / math.comb(a + b, i + j)
-            result[:, i + j] += weight * one[:, i] * other[:, j]
-    return result
+        result[i : i + b + 1] += math.comb(a, i) * one[i] * scaled
+    return np.asarray(result / _binomials(a + b))
 
 
-def _restricted(control: Floats, low: float, high: float) -> Floats:
-    """Control points of the part of arcs between two parameters, by de Casteljau."""
-    return _head(_head(control, high)[:, ::-1], 1.0 - low / high)[:, ::-1]
+def _binomials(n: int) -> Floats:
+    return np.array([[math.comb(n, k)] for k in range(n + 1)], dtype=np.float64)
+
+
+@cache
+def _in_parts(degree: int) -> Floats:
+    """The matrix that takes control points to those of all equal parts, one after the other."""
+    every = np.eye(degree + 1)
+    parts = [
+        _head(_head(every, (k + 1) / _PARTS)[::-1], 1.0 - k / (k + 1))[::-1] for k in range(_PARTS)
+    ]
+    return np.concatenate(parts)
 
 
 def _head(control: Floats, at: float) -> Floats:
-    """Control points of the part of arcs from 0 to a parameter."""
+    """Control points of the part of an arc from 0 to a parameter, by de Casteljau."""
     result = np.empty_like(control)
     points = control
-    for k in range(control.shape[1]):
-        result[:, k] = points[:, 0]
-        points = (1.0 - at) * points[:, :-1] + at * points[:, 1:]
+    for k in range(len(control)):
+        result[k] = points[0]
+        points = (1.0 - at) * points[:-1] + at * points[1:]
     return result
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -54,12 +55,18 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
 
 def control_points(power: Floats) -> Floats:
     """Bernstein-Bézier points of arcs (n, degree + 1, 2) given in powers of the parameter."""
-    degree = power.shape[1] - 1
-    result = np.zeros_like(power)
-    for k in range(degree + 1):
-        for j in range(k + 1):
-            result[:, k] += math.comb(k, j) / math.comb(degree, j) * power[:, j]
-    return result
+    return np.asarray(_from_powers(power.shape[1] - 1) @ power)
+
+
+@cache
+def _from_powers(degree: int) -> Floats:
+    """The matrix that takes coefficients of powers to Bernstein-Bézier points."""
+    return np.array(
+        [
+            [math.comb(k, j) / math.comb(degree, j) for j in range(degree + 1)]
+            for k in range(degree + 1)
+        ]
+    )
 
 
 def degrees(arclets: Arclets) -> Ints:

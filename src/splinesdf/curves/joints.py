@@ -80,6 +80,7 @@ def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
     for d in np.unique(degree[degree > 1]):
         rows = np.flatnonzero(degree == d)
         control = control_points(boundary.power[rows, : d + 1])
+        stands = np.zeros(len(rows), dtype=np.bool_)
         for points, result, sign in (
             (control, directions[0], 1.0),
             (control[:, ::-1], directions[1], -1.0),
@@ -87,14 +88,15 @@ def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
             step, next_step = (np.abs(points[:, k] - points[:, 0]).max(axis=1) for k in (1, 2))
             still = (step <= noise) & (step <= _STANDS * next_step)
             points[still, 1] = points[still, 0]
+            stands |= still
             # Where the velocity vanishes the next derivative decides, and then the chord.
             for k in (2, 1):
                 vector = sign * d * (points[:, k] - points[:, 0])
                 known = np.any(vector != 0.0, axis=1)
                 result[rows[known]] = vector[known]
         for k in range(1, d + 1):
-            arcs[rows, 3 + 2 * k : 5 + 2 * k] = (
-                math.comb(d, k) * np.diff(control, n=k, axis=1)[:, 0]
+            arcs[rows[stands], 3 + 2 * k : 5 + 2 * k] = (
+                math.comb(d, k) * np.diff(control[stands], n=k, axis=1)[:, 0]
             )
     return arcs, directions
 

@@ -90,6 +90,8 @@ def _meet(
     if following[j] == i:
         shared[count, 0], shared[count, 1] = arcs[j, 2, 0], arcs[j, 2, 1]
         count += 1
+    if count == 1 and _leave_apart(arcs, i, j, following):
+        return False
     for side, one in ((0, i), (1, j)):
         for k in range(3):
             stack[0, side, 2 * k], stack[0, side, 2 * k + 1] = arcs[one, k, 0], arcs[one, k, 1]
@@ -118,6 +120,24 @@ def _meet(
         stack[size + 1, 1 - which] = other
         size += 2
     return False
+
+
+@kernel
+def _leave_apart(arcs: Floats, i: int, j: int, following: Ints) -> bool:
+    """Whether a line through the end that two arcs share has one on either side of it."""
+    first, second = (i, j) if following[i] == j else (j, i)
+    x, y = arcs[first, 2, 0], arcs[first, 2, 1]
+    ax, ay = x - arcs[first, 1, 0], y - arcs[first, 1, 1]
+    bx, by = arcs[second, 1, 0] - x, arcs[second, 1, 1] - y
+    a, b = math.hypot(ax, ay), math.hypot(bx, by)
+    # Across the line: halfway between both directions.
+    nx, ny = ax * b + bx * a, ay * b + by * a
+    for k in range(2):
+        if not nx * (arcs[first, k, 0] - x) + ny * (arcs[first, k, 1] - y) < 0.0:
+            return False
+        if not nx * (arcs[second, k + 1, 0] - x) + ny * (arcs[second, k + 1, 1] - y) > 0.0:
+            return False
+    return True
 
 
 @kernel

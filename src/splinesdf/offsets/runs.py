@@ -104,4 +104,4 @@ def _sweeps(shape: Shape, loops: Loops, order: Ints, distance: float) -> Floats:
 def _turned(rows: Ints, same: Bools) -> Ints:
     """The rows of a loop, starting behind a break if there is one."""
     breaks = np.flatnonzero(~same)
-    return np.roll(rows, -(breaks[-1] + 1)) if len(breaks) else rows
+    return np.concatenate([rows[breaks[-1] + 1 :], rows[: breaks[-1] + 1]]) if len(breaks) else rows
