@@ -135,29 +135,44 @@ def _stays_nearer(
     low, high = (row[0], row[1]) if right > 0.0 else (-row[1], -row[0])
     if not (-np.inf < min(low, least) and max(high, most) < np.inf):
         return False
-    # Curvatures of the wall's level sets are kappa / (1 + kappa u), which increase with kappa.
+    # The foot moves by no more than this, and its way to an end is no shorter than the chord.
     width = 1.0 + min(low * (far + length), 0.0)
     if width <= 0.0:
         return False
-    # The foot moves by no more than this, and its way to an end is no shorter than the chord.
     travel = length / width
     px, py = point_on(arcs, j, t)
     for k in (1, 3):
         if math.sqrt((px - arcs[j, k]) ** 2 + (py - arcs[j, k + 1]) ** 2) <= travel:
             return False
-    h_low, h_high = low / width, high / (1.0 + high * (far - length))
-    # how much the angle between g and T changes
-    change = (max(abs(h_low), abs(h_high)) + max(abs(least), abs(most))) * length
     side = gy * tx - gx * ty
-    # |g.n| is between u and 1, and the second derivative at most h_high u^2 + bend u.
-    u = abs(side) * (1.0 - 0.5 * change * change) - abs(slope) * change
-    if u <= 0.0:
-        return False
-    bend = most if side > 0.0 else -least
-    over = max(h_high * u * u + bend * u, h_high + bend)
-    if h_high < 0.0 and 2.0 * abs(h_high) * u < bend < 2.0 * abs(h_high):
-        over = max(over, -0.25 * bend * bend / h_high)
+    straight, bend = (least, most) if side > 0.0 else (-most, -least)
+    # |g.n| is between u and 1, and the distance changes by no more than ``change``. Where wall and
+    # stretch turn about one center both hardly change, as the first round shows the second.
+    u, change = 0.0, length
+    over = np.inf
+    for _ in range(2):
+        # Curvatures of the wall's level sets are kappa / (1 + kappa far): more with kappa, less with
+        # the distance.
+        h_low = low / (1.0 + low * (far + change))
+        h_high = high / (1.0 + high * (far - change))
+        # T turns against g by k + h (g.n).
+        turn = max(bend + max(h_high * u, h_high), -straight - min(h_low * u, h_low)) * length
+        u = abs(side) * (1.0 - 0.5 * turn * turn) - abs(slope) * turn
+        if u <= 0.0:
+            return False
+        over, under = _largest(h_high, bend, u), _largest(-h_low, -straight, u)
+        change = abs(slope) * length + 0.5 * max(over, under, 0.0) * length * length
+        change = min(change, length)
     return bool(gap + abs(slope) * length + 0.5 * max(over, 0.0) * length * length <= 0.0)
+
+
+@kernel
+def _largest(a: float, b: float, low: float) -> float:
+    """The largest value of a x^2 + b x for x from ``low`` to 1."""
+    result = max(a * low * low + b * low, a + b)
+    if a < 0.0 and -2.0 * a * low < b < -2.0 * a:
+        result = max(result, -0.25 * b * b / a)
+    return result
 
 
 @kernel

@@ -33,9 +33,10 @@ from splinesdf.kernels.parallels import parallel_point
 # Halvings of an arclet to separate where its parallel runs forward from where it runs backward.
 # What is then undecided is 1/4096 of it next to a turning point, less than 1e-14 of the offset.
 _TURNING = 12
-# The parallel of an arclet is but a point, to rounding, if it is shorter by this factor, as that of
-# a circle at its own radius.
-_POINT = 1e-11
+# The parallel of an arclet is but a point if it is shorter by this factor, as that of a circle at
+# its own radius. Larger: what is left out may be larger than a speck (see `offsets.loops`);
+# smaller: rounding in curvatures, some 1e-11, makes thousands of stretches of such a point.
+_POINT = 1e-9
 # An arclet that may bend without limit, next to a cusp, is taken in so many equal parts.
 _CUSP_PARTS = 64
 # A stretch whose reach is not small against |d| is halved rather than compared with more than a few
