@@ -27,6 +27,7 @@ CHOSEN = [
     ("icons", "fingerprint", 0.01, 1e-4),
     ("icons", "airplane", -0.03, 1e-6),
     ("icons", "umbrella-fill", 0.1, 1e-5),
+    ("icons", "toggles2", -0.01, 1e-5),
     ("mechanical", "flange", 0.03, 1e-6),
     ("mechanical", "flange", -0.1, 1e-4),
     ("mechanical", "slotted link", -0.1, 1e-5),

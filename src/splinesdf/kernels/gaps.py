@@ -151,8 +151,8 @@ def _stays_nearer(
     u, change = 0.0, length
     over = np.inf
     for _ in range(2):
-        # Curvatures of the wall's level sets are kappa / (1 + kappa far): more with kappa, less with
-        # the distance.
+        # Curvatures of the wall's level sets are kappa / (1 + kappa far): increasing with kappa,
+        # decreasing with the distance.
         h_low = low / (1.0 + low * (far + change))
         h_high = high / (1.0 + high * (far - change))
         # T turns against g by k + h (g.n).

@@ -27,6 +27,9 @@ _WIDER = 30.0
 _SHORT = 1e-4
 # Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size.
 _SHALLOW = 1e-5
+# Where a parallel is as far from the boundary as asked but for this share of the size, it was cut
+# for rounding only. Larger: what something is nearer to by as much stays in.
+_ROUNDING = 1e-12
 # They may cross so far (in the parameter) beyond the end of an arclet, on its continuation.
 _BEYOND = 1e-3
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
@@ -64,6 +67,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
         return None
     follows[ends] = starts[which]
     _to_crossings(shape, stretches, spans, points, ends, follows[ends], distance)
+    _fill_in(shape, stretches, spans, points, (ends, follows[ends]), distance)
     bridges = _bridges(shape, points, ends, follows[ends], distance, tolerance)
     if bridges is None:
         return None
@@ -197,6 +201,41 @@ def _to_crossings(
         gap = np.where(better[:, None], new_gap, gap)
     spans[one, 1], spans[other, 0] = a, b
     points[1, one], points[0, other] = at_a, at_b
+
+
+def _fill_in(
+    shape: Shape,
+    stretches: Stretches,
+    spans: Floats,
+    points: Floats,
+    joined: tuple[Ints, Ints],
+    distance: float,
+) -> None:
+    """Let smooth parallels run on where they were cut though nothing is nearer, but for rounding.
+
+    So they are beside a point of the shape in which another branch touches this one. Fills
+    ``spans`` and ``points`` of those stretches that end there and of those that start there.
+    """
+    one, other = joined
+    (i, corner), (j, other_corner) = stretches.elements[one].T, stretches.elements[other].T
+    end, start = spans[one, 1], spans[other, 0]
+    same = (i == j) & (end < start)
+    next_ = (shape.joints.following[i] == j) & (np.abs(shape.joints.turn[i]) <= SMOOTH)
+    gap = np.hypot(*(points[0, other, :2] - points[1, one, :2]).T)
+    cut = (corner + other_corner == 0) & (same | next_) & (gap > 0.0)
+    cut &= gap <= _SHALLOW * shape.size
+    one, other, same, middle = one[cut], other[cut], same[cut], 0.5 * (end + start)[cut]
+    if not len(one):
+        return
+    ends = parallels(shape, stretches.elements[one], np.where(same, middle, 1.0), distance)
+    starts = parallels(shape, stretches.elements[other], np.where(same, middle, 0.0), distance)
+    exact = signed_distance(shape, ends[:, :2] + shape.boundary.origin)
+    near = np.abs(exact - distance) <= _ROUNDING * (shape.size + abs(distance))
+    near &= ends[:, 4] > 0.0
+    one, other = one[near], other[near]
+    points[1, one], points[0, other] = ends[near], starts[near]
+    spans[one, 1] = np.where(same, middle, 1.0)[near]
+    spans[other, 0] = np.where(same, middle, 0.0)[near]
 
 
 def _bridges(
