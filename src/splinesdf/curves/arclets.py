@@ -32,6 +32,9 @@ _BENT = 2.0
 # Halvings after which a piece is taken as it is. Only pieces that shrink to a point (cusps, where
 # the chord vanishes as fast as the bulge) get there; the kernel is exact on them all the same.
 _HALVINGS = 12
+# Nor is anything cut that is smaller than this share of the largest coordinate. Smaller: next to a
+# cusp of a short piece, directions of what is cut off are rounding.
+_SMALLEST = 1e-8
 # Halvings to bracket each turn; two turns closer than 2^-40 of a piece are one, to rounding.
 _TURN_HALVINGS = 40
 # A step between control points below this share of the largest coordinate is rounding: the x of a
@@ -70,7 +73,8 @@ def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
         arcs = control[starts[chosen][:, None] + np.arange(degree + 1)]
         interval = np.broadcast_to([0.0, 1.0], (len(arcs), 2)).copy()
         first = arcs[:, 0] - origin
-        groups.append(_cut(Arcs(arcs - _slow_ends(arcs), first, chosen, interval)))
+        largest = float(np.abs(control).max())
+        groups.append(_cut(_near_slow_ends(Arcs(arcs, first, chosen, interval)), largest))
     piece = np.concatenate([group.piece for group in groups])
     order = np.lexsort((np.concatenate([group.interval[:, 0] for group in groups]), piece))
     place = np.empty(len(piece), dtype=np.int64)
@@ -79,10 +83,12 @@ def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
     return assemble(groups, Runs(label, place, np.ones(len(loops) - 1, dtype=bool)), origin)
 
 
-def _slow_ends(arcs: Floats) -> Floats:
-    """The end of each arc at which it is slower, and has its cusp if it has one: (n, 1, 2)."""
-    first, last = (np.abs(arcs[:, a] - arcs[:, b]).max(axis=1) for a, b in ((0, 1), (-1, -2)))
-    return np.where((first <= last)[:, None, None], arcs[:, :1], arcs[:, -1:])
+def _near_slow_ends(arcs: Arcs) -> Arcs:
+    """The arcs less the end at which each is slower, and has its cusp if it has one."""
+    control = arcs.control
+    first, last = (np.abs(control[:, a] - control[:, b]).max(axis=1) for a, b in ((0, 1), (-1, -2)))
+    ends = np.where((first <= last)[:, None, None], control[:, :1], control[:, -1:])
+    return arcs._replace(control=control - ends)
 
 
 def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
@@ -174,8 +180,11 @@ def _following(label: Ints, closed: Bools) -> Ints:
     return result
 
 
-def _cut(arcs: Arcs) -> Arcs:
-    """Split pieces of one degree: where x or y turns first, then until they are thin."""
+def _cut(arcs: Arcs, largest: float) -> Arcs:
+    """Split pieces of one degree: where x or y turns first, then until they are thin.
+
+    ``largest`` is the largest absolute coordinate of the shape, in its own system.
+    """
     if arcs.control.shape[1] == 2:
         return arcs
     noise = _NO_STEP * float(np.maximum(np.abs(arcs.start), np.abs(ends(arcs))).max())
@@ -184,11 +193,12 @@ def _cut(arcs: Arcs) -> Arcs:
     # Two turns in one place, as in a cusp, leave a part between them that is all rounding.
     whole = (arcs.interval[:, 0] == 0.0) & (arcs.interval[:, 1] == 1.0)
     arcs = _take(arcs, whole | (np.ptp(arcs.control, axis=1).max(axis=1) > noise))
+    arcs = _near_slow_ends(arcs)
     done = []
     for _ in range(_HALVINGS):
         size = np.ptp(arcs.control, axis=1).max(axis=1)
         thick = (_bulge(arcs.control) > _BULGE) | (_most_bent(arcs.control) > _BENT)
-        thick &= size > noise
+        thick &= size > _SMALLEST * largest
         done.append(_take(arcs, ~thick))
         arcs = split(_take(arcs, thick), 0.5)
         if len(arcs.control) == 0:

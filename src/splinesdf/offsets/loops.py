@@ -30,6 +30,8 @@ _SHALLOW = 1e-5
 # Where a parallel is as far from the boundary as asked but for this share of the size, it was cut
 # for rounding only. Larger: what something is nearer to by as much stays in.
 _ROUNDING = 1e-12
+# Stretches that overlap are nearly on one line if they turn by less than this (radians) there.
+_OVERLAP = 1e-3
 # They may cross so far (in the parameter) beyond the end of an arclet, on its continuation.
 _BEYOND = 1e-3
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
@@ -66,6 +68,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     if which is None:
         return None
     follows[ends] = starts[which]
+    _draw_back(shape, stretches, spans, points, (ends, follows[ends]), distance)
     _to_crossings(shape, stretches, spans, points, ends, follows[ends], distance)
     _fill_in(shape, stretches, spans, points, (ends, follows[ends]), distance)
     bridges = _bridges(shape, points, ends, follows[ends], distance, tolerance)
@@ -236,6 +239,39 @@ def _fill_in(
     points[1, one], points[0, other] = ends[near], starts[near]
     spans[one, 1] = np.where(same, middle, 1.0)[near]
     spans[other, 0] = np.where(same, middle, 0.0)[near]
+
+
+def _draw_back(
+    shape: Shape,
+    stretches: Stretches,
+    spans: Floats,
+    points: Floats,
+    joined: tuple[Ints, Ints],
+    distance: float,
+) -> None:
+    """Take back what two stretches, nearly on one line, overlap: the quicker one begins later.
+
+    Next to a cusp parallels turn back so shortly that rounding hides where they cross. Fills
+    ``spans`` and ``points``.
+    """
+    one, other = joined
+    gap = points[0, other, :2] - points[1, one, :2]
+    length = np.hypot(*gap.T)
+    ahead, leaving = points[1, one, 2:4], points[0, other, 2:4]
+    back = (np.sum(gap * ahead, axis=1) < -0.5 * length) & (length <= _SHALLOW * shape.size)
+    back &= np.abs(angles(ahead, leaving)) <= _OVERLAP
+    for a, b, away in zip(one[back], other[back], length[back], strict=True):
+        late = abs(points[0, b, 4]) >= abs(points[1, a, 4])
+        row, side, fixed = (b, 0, points[1, a]) if late else (a, 1, points[0, b])
+        t, at = spans[row, side], points[side, row]
+        for _ in range(_STEPS):
+            t += float((fixed[:2] - at[:2]) @ at[2:4] / at[4])
+            if not 0.0 < t < 1.0:
+                break
+            at = parallels(shape, stretches.elements[[row]], np.array([t]), distance)[0]
+        shorter = spans[b, 0] < t < spans[b, 1] if late else spans[a, 0] < t < spans[a, 1]
+        if shorter and np.hypot(*(at[:2] - fixed[:2])) < 0.01 * away:
+            spans[row, side], points[side, row] = t, at
 
 
 def _bridges(
