@@ -66,15 +66,14 @@ class Runs(NamedTuple):
 def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
     """Cut the pieces of a shape (see `Shape`) into arclets and put the tree over them."""
     origin = 0.5 * (control.min(axis=0) + control.max(axis=0))
+    largest = float(np.abs(control).max())
     degrees = np.diff(starts) - 1
     groups = []
     for degree in np.unique(degrees):
         chosen = np.flatnonzero(degrees == degree)
         arcs = control[starts[chosen][:, None] + np.arange(degree + 1)]
         interval = np.broadcast_to([0.0, 1.0], (len(arcs), 2)).copy()
-        first = arcs[:, 0] - origin
-        largest = float(np.abs(control).max())
-        groups.append(_cut(_near_slow_ends(Arcs(arcs, first, chosen, interval)), largest))
+        groups.append(_cut(Arcs(arcs, arcs[:, 0] - origin, chosen, interval), largest))
     piece = np.concatenate([group.piece for group in groups])
     order = np.lexsort((np.concatenate([group.interval[:, 0] for group in groups]), piece))
     place = np.empty(len(piece), dtype=np.int64)
@@ -188,11 +187,13 @@ def _cut(arcs: Arcs, largest: float) -> Arcs:
     if arcs.control.shape[1] == 2:
         return arcs
     noise = _NO_STEP * float(np.maximum(np.abs(arcs.start), np.abs(ends(arcs))).max())
+    arcs = _near_slow_ends(arcs)
     for axis in (0, 1):
         arcs = _split_turns(arcs, axis, noise)
     # Two turns in one place, as in a cusp, leave a part between them that is all rounding.
     whole = (arcs.interval[:, 0] == 0.0) & (arcs.interval[:, 1] == 1.0)
     arcs = _take(arcs, whole | (np.ptp(arcs.control, axis=1).max(axis=1) > noise))
+    # A cusp inside a piece is an end by now.
     arcs = _near_slow_ends(arcs)
     done = []
     for _ in range(_HALVINGS):

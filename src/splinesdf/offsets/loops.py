@@ -41,6 +41,16 @@ _MOVED = 1e-3
 _LEAST, _SPECK = 1e-3, 1e-9
 
 
+class Loose(NamedTuple):
+    """Stretches of which some end where others start: ends that are to meet, and are moved."""
+
+    elements: Ints  # (n, 2) see `Stretches`
+    spans: Floats  # (n, 2) moved in place
+    points: Floats  # (2, n, 6) what `parallels` has at starts and ends, moved along
+    one: Ints  # (m,) whose ends
+    other: Ints  # (m,) whose starts, one for each
+
+
 class Loops(NamedTuple):
     """Closed loops, one after the other; each row is a stretch or a bridge, in order."""
 
@@ -68,9 +78,10 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     if which is None:
         return None
     follows[ends] = starts[which]
-    _draw_back(shape, stretches, spans, points, (ends, follows[ends]), distance)
-    _to_crossings(shape, stretches, spans, points, ends, follows[ends], distance)
-    _fill_in(shape, stretches, spans, points, (ends, follows[ends]), distance)
+    loose = Loose(stretches.elements, spans, points, ends, follows[ends])
+    _draw_back(shape, loose, distance)
+    _to_crossings(shape, loose, distance)
+    _fill_in(shape, loose, distance)
     bridges = _bridges(shape, points, ends, follows[ends], distance, tolerance)
     if bridges is None:
         return None
@@ -163,20 +174,13 @@ def _matched(ends: Floats, starts: Floats, farthest: float) -> Ints | None:
         radius = min(radius * _WIDER, farthest)
 
 
-def _to_crossings(
-    shape: Shape,
-    stretches: Stretches,
-    spans: Floats,
-    points: Floats,
-    one: Ints,
-    other: Ints,
-    distance: float,
-) -> None:
+def _to_crossings(shape: Shape, loose: Loose, distance: float) -> None:
     """Move the ends of some stretches and the starts of others to where both cross, if they do.
 
-    Fills ``spans`` and ``points``. Trimming leaves both ends at nearly the same point, each to
-    rounding over the sine of the angle between them.
+    Trimming leaves both ends at nearly the same point, each to rounding over the sine of the angle
+    between them.
     """
+    elements, spans, points, one, other = loose
     a, b = spans[one, 1].copy(), spans[other, 0].copy()
     at_a, at_b = points[1, one].copy(), points[0, other].copy()
     gap = at_b[:, :2] - at_a[:, :2]
@@ -192,8 +196,8 @@ def _to_crossings(
         # Beyond both ends it would be a miter.
         usable &= (new_a <= 1.0) | (new_b >= 0.0)
         new_a, new_b = np.where(usable, new_a, a), np.where(usable, new_b, b)
-        new_at_a = parallels(shape, stretches.elements[one], new_a, distance)
-        new_at_b = parallels(shape, stretches.elements[other], new_b, distance)
+        new_at_a = parallels(shape, elements[one], new_a, distance)
+        new_at_b = parallels(shape, elements[other], new_b, distance)
         new_gap = new_at_b[:, :2] - new_at_a[:, :2]
         better = np.hypot(*new_gap.T) < np.hypot(*gap.T)
         if not better.any():
@@ -206,21 +210,13 @@ def _to_crossings(
     points[1, one], points[0, other] = at_a, at_b
 
 
-def _fill_in(
-    shape: Shape,
-    stretches: Stretches,
-    spans: Floats,
-    points: Floats,
-    joined: tuple[Ints, Ints],
-    distance: float,
-) -> None:
+def _fill_in(shape: Shape, loose: Loose, distance: float) -> None:
     """Let smooth parallels run on where they were cut though nothing is nearer, but for rounding.
 
-    So they are beside a point of the shape in which another branch touches this one. Fills
-    ``spans`` and ``points`` of those stretches that end there and of those that start there.
+    So they are beside a point of the shape in which another branch touches this one.
     """
-    one, other = joined
-    (i, corner), (j, other_corner) = stretches.elements[one].T, stretches.elements[other].T
+    elements, spans, points, one, other = loose
+    (i, corner), (j, other_corner) = elements[one].T, elements[other].T
     end, start = spans[one, 1], spans[other, 0]
     same = (i == j) & (end < start)
     next_ = (shape.joints.following[i] == j) & (np.abs(shape.joints.turn[i]) <= SMOOTH)
@@ -230,8 +226,8 @@ def _fill_in(
     one, other, same, middle = one[cut], other[cut], same[cut], 0.5 * (end + start)[cut]
     if not len(one):
         return
-    ends = parallels(shape, stretches.elements[one], np.where(same, middle, 1.0), distance)
-    starts = parallels(shape, stretches.elements[other], np.where(same, middle, 0.0), distance)
+    ends = parallels(shape, elements[one], np.where(same, middle, 1.0), distance)
+    starts = parallels(shape, elements[other], np.where(same, middle, 0.0), distance)
     exact = signed_distance(shape, ends[:, :2] + shape.boundary.origin)
     near = np.abs(exact - distance) <= _ROUNDING * (shape.size + abs(distance))
     near &= ends[:, 4] > 0.0
@@ -241,20 +237,12 @@ def _fill_in(
     spans[other, 0] = np.where(same, middle, 0.0)[near]
 
 
-def _draw_back(
-    shape: Shape,
-    stretches: Stretches,
-    spans: Floats,
-    points: Floats,
-    joined: tuple[Ints, Ints],
-    distance: float,
-) -> None:
+def _draw_back(shape: Shape, loose: Loose, distance: float) -> None:
     """Take back what two stretches, nearly on one line, overlap: the quicker one begins later.
 
-    Next to a cusp parallels turn back so shortly that rounding hides where they cross. Fills
-    ``spans`` and ``points``.
+    Next to a cusp parallels turn back so shortly that rounding hides where they cross.
     """
-    one, other = joined
+    elements, spans, points, one, other = loose
     gap = points[0, other, :2] - points[1, one, :2]
     length = np.hypot(*gap.T)
     ahead, leaving = points[1, one, 2:4], points[0, other, 2:4]
@@ -265,10 +253,12 @@ def _draw_back(
         row, side, fixed = (b, 0, points[1, a]) if late else (a, 1, points[0, b])
         t, at = spans[row, side], points[side, row]
         for _ in range(_STEPS):
+            if at[4] == 0.0:  # a point that stands still
+                break
             t += float((fixed[:2] - at[:2]) @ at[2:4] / at[4])
             if not 0.0 < t < 1.0:
                 break
-            at = parallels(shape, stretches.elements[[row]], np.array([t]), distance)[0]
+            at = parallels(shape, elements[[row]], np.array([t]), distance)[0]
         shorter = spans[b, 0] < t < spans[b, 1] if late else spans[a, 0] < t < spans[a, 1]
         if shorter and np.hypot(*(at[:2] - fixed[:2])) < 0.01 * away:
             spans[row, side], points[side, row] = t, at
