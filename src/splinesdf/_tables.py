@@ -82,7 +82,6 @@ class Kinds(NamedTuple):
 
     kind: Ints  # (n,) FREE, STRAIGHT or ROUND
     center: Floats  # (n, 2) of a round one
-    radius: Floats  # (n,) of a round one, positive if it bends to the left
 
 
 class Trimming(NamedTuple):

@@ -15,7 +15,7 @@ from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops, loops_of
 from splinesdf.offsets.runs import runs_of
-from splinesdf.offsets.trimmed import Stretches, trimmed
+from splinesdf.offsets.trimmed import Stretches, smooth_turn, trimmed
 
 # Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
 # share of the tolerance and, if need be, to its powers.
@@ -45,7 +45,9 @@ def contours_at(
     moved = distance + shift
     # Moved by little, walls that were just twice the distance apart end in two crossings close to
     # each other: trimming must tell them apart.
-    stretches = trimmed(shape, moved, abs(shift) or tolerance) if moved else _whole(shape)
+    apart = abs(shift) or tolerance
+    smooth = smooth_turn(moved, tolerance)
+    stretches = trimmed(shape, moved, apart, smooth) if moved else _whole(shape)
     loops = loops_of(shape, stretches, moved, tolerance)
     if loops is None:
         return None
@@ -75,7 +77,7 @@ def _fit_clear_of_itself(
     """Arcs, weights, where each loop's arcs start, whether none meet, whether one turns back."""
     if len(loops.first) < 2:
         return None
-    runs, starts = runs_of(shape, loops, distance)
+    runs, starts = runs_of(shape, loops, distance, tolerance)
     allowed = np.full(len(runs.kind), tolerance)
     for _ in range(_ROUNDS):
         arcs, weights, owner = _fitted(shape, runs, distance, allowed)
