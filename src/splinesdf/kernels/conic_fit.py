@@ -32,6 +32,10 @@ _AIM, _ENOUGH = 0.9, 0.8
 _ROOM = 4096
 # No arc is shorter than this share of an element.
 _SHORTEST = 1e-6
+# What reaches no farther than this share of the tolerance is no reason to end an arc, whatever its
+# directions: so small, they are rounding. Larger: tangents jump where a chord takes its place;
+# smaller: next to ends that stand still, stubs by the thousand.
+_LITTLE = 0.03
 
 
 @kernel
@@ -208,6 +212,11 @@ def _free(
                 )
                 if off <= 1.0:
                     break
+                if _extent(joints, runs, (begin, place, at), node, asked, points) <= (
+                    _LITTLE * asked[1]
+                ):
+                    px, py, w = 0.5 * (node[0] + other[0]), 0.5 * (node[1] + other[1]), 1.0
+                    break
                 if at - place < _SHORTEST:
                     # Directions are rounding here, as next to a cusp: a chord has to do.
                     at = _chord(joints, runs, r, (place, limit), node, asked, points)
@@ -289,6 +298,10 @@ def _farthest(
                 return limit
             if off > _ENOUGH:
                 return at
+        elif _extent(joints, runs, (begin, place, at), node, asked, points) <= _LITTLE * asked[1]:
+            low = length
+            if at == limit:
+                return limit
         else:
             high = length
         if high < _SHORTEST:
@@ -299,6 +312,26 @@ def _farthest(
         length *= min(max((_AIM / max(off, 1e-9)) ** 0.2, 0.3), _GROWTH)
         if not low < length < high:
             length = _GROWTH * low if high == np.inf else 0.5 * (low + high)
+
+
+@kernel
+def _extent(
+    joints: Joints,
+    runs: Runs,
+    span: tuple[int, float, float],
+    node: tuple[float, float, float, float],
+    asked: tuple[float, float],
+    points: Floats,
+) -> float:
+    """How far a part of a run reaches from its start; infinite if that takes too many points."""
+    start = node[0], node[1]
+    count = look(joints, runs, span, start, asked[0], 1, asked[1], points)
+    if count < 0:
+        return np.inf
+    result = 0.0
+    for k in range(count):
+        result = max(result, math.hypot(points[k, 0] - node[0], points[k, 1] - node[1]))
+    return result
 
 
 @kernel
