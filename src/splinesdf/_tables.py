@@ -71,6 +71,9 @@ class Joints(NamedTuple):
     # Rows as in `Arclets`, up to the power basis; velocities that are rounding are zero, so that no
     # normal is taken from them.
     arcs: Floats
+    # (n, 2) the point, of those in which several branches meet, that each arclet starts and ends
+    # in; -1 for none, see `splinesdf.curves.vertices`
+    touch: Ints
 
 
 # What an arclet, or a run of an offset, is.

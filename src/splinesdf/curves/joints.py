@@ -10,6 +10,7 @@ from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets, Joints
 from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import angles, derivatives_at, points_at
+from splinesdf.curves.vertices import Vertices
 
 # A velocity at an end below the first, as a share of the largest coordinate, and below the second,
 # as a share of what the next derivative is good for, is rounding: the arclet stands still there.
@@ -33,8 +34,14 @@ _DIRECTION = 16 * 2.220446049250313e-16
 _CUT = 1e-5
 
 
-def joints(boundary: Arclets) -> Joints:
-    """Loops, turns and tangents of a boundary."""
+def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
+    """Loops, turns and tangents of a boundary, seen from inside or outside where it touches itself.
+
+    Seen from either side the same arclets make up different loops.
+    """
+    following = boundary.following.copy()
+    following[vertices.ends] = vertices.outside if outside else vertices.inside
+    boundary = boundary._replace(following=following)
     boundary = boundary._replace(following=_closed(boundary))
     order, loops = cycles(boundary.following)
     sizes = np.diff(loops)
@@ -68,7 +75,9 @@ def joints(boundary: Arclets) -> Joints:
     for undecided in cusps[side == 0.0]:
         _close_up(turn, early + late, int(undecided), order, loops)
     tangents = np.concatenate([leaving, arriving], axis=1)
-    return Joints(order, loops, place, boundary.following, turn, tangents, turning, arcs)
+    return Joints(
+        order, loops, place, boundary.following, turn, tangents, turning, arcs, vertices.touch
+    )
 
 
 def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:

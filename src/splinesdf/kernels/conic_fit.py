@@ -36,6 +36,8 @@ _SHORTEST = 1e-6
 # directions: so small, they are rounding. Larger: tangents jump where a chord takes its place;
 # smaller: next to ends that stand still, stubs by the thousand.
 _LITTLE = 0.03
+# Points of an element that are looked at for that.
+_LOOKED = 6
 
 
 @kernel
@@ -212,9 +214,7 @@ def _free(
                 )
                 if off <= 1.0:
                     break
-                if _extent(joints, runs, (begin, place, at), node, asked, points) <= (
-                    _LITTLE * asked[1]
-                ):
+                if _is_little(joints, runs, (begin, place, at), node, asked):
                     px, py, w = 0.5 * (node[0] + other[0]), 0.5 * (node[1] + other[1]), 1.0
                     break
                 if at - place < _SHORTEST:
@@ -298,7 +298,7 @@ def _farthest(
                 return limit
             if off > _ENOUGH:
                 return at
-        elif _extent(joints, runs, (begin, place, at), node, asked, points) <= _LITTLE * asked[1]:
+        elif _is_little(joints, runs, (begin, place, at), node, asked):
             low = length
             if at == limit:
                 return limit
@@ -315,23 +315,22 @@ def _farthest(
 
 
 @kernel
-def _extent(
+def _is_little(
     joints: Joints,
     runs: Runs,
     span: tuple[int, float, float],
     node: tuple[float, float, float, float],
     asked: tuple[float, float],
-    points: Floats,
-) -> float:
-    """How far a part of a run reaches from its start; infinite if that takes too many points."""
-    start = node[0], node[1]
-    count = look(joints, runs, span, start, asked[0], 1, asked[1], points)
-    if count < 0:
-        return np.inf
-    result = 0.0
-    for k in range(count):
-        result = max(result, math.hypot(points[k, 0] - node[0], points[k, 1] - node[1]))
-    return result
+) -> bool:
+    """Whether a part of a run stays within a share of the tolerance about its start."""
+    begin, place, end = span
+    count = _LOOKED * (math.ceil(end) - int(place))
+    for k in range(count, 0, -1):
+        at = place + (end - place) * k / count
+        row = run_point(joints, runs, begin, at, asked[0])
+        if math.hypot(row[0] - node[0], row[1] - node[1]) > _LITTLE * asked[1]:
+            return False
+    return True
 
 
 @kernel

@@ -15,7 +15,7 @@ from splinesdf.curves.geometry import angles
 from splinesdf.curves.joints import CUSP, cycles
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
-from splinesdf.offsets.trimmed import SMOOTH, Stretches, parallels, smooth_turn
+from splinesdf.offsets.trimmed import SMOOTH, Stretches, joints_at, parallels, smooth_turn
 
 # Steps of Newton's method from where trimming left two stretches to where they cross.
 _STEPS = 6
@@ -94,7 +94,7 @@ def _run_on(shape: Shape, stretches: Stretches, distance: float, smooth: float) 
     """The stretch that each one runs on into, -1 where it ends in a corner: (n,)."""
     elements, spans = stretches
     arclet, corner = elements.T
-    boundary, joints = shape.boundary, shape.joints
+    boundary, joints = shape.boundary, joints_at(shape, distance)
     turns = (corner == 0) & (joints.turn[arclet] * distance > smooth * abs(distance))
     # What comes next: the arc around the end, or the next arclet.
     wanted = np.where(turns, 2 * arclet + 1, 2 * joints.following[arclet])
@@ -121,7 +121,7 @@ def _without_wrong_sides(
     Such are slivers between the branches of a cusp, and short ones where boundaries touch.
     """
     right = np.ones(len(follows), dtype=np.bool_)
-    if (np.abs(shape.joints.turn) > np.pi - CUSP).any():
+    if (np.abs(joints_at(shape, distance).turn) > np.pi - CUSP).any():
         asked = np.arange(len(follows))
     else:
         asked = np.flatnonzero((follows < 0) | _led_to_by_none(follows))
@@ -220,7 +220,8 @@ def _fill_in(shape: Shape, loose: Loose, distance: float, smooth: float) -> None
     (i, corner), (j, other_corner) = elements[one].T, elements[other].T
     end, start = spans[one, 1], spans[other, 0]
     same = (i == j) & (end < start)
-    next_ = (shape.joints.following[i] == j) & (np.abs(shape.joints.turn[i]) <= smooth)
+    joints = joints_at(shape, distance)
+    next_ = (joints.following[i] == j) & (np.abs(joints.turn[i]) <= smooth)
     gap = np.hypot(*(points[0, other, :2] - points[1, one, :2]).T)
     cut = (corner + other_corner == 0) & (same | next_) & (gap > 0.0)
     cut &= gap <= _SHALLOW * shape.size

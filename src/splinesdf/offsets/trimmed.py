@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import Trimming
+from splinesdf._tables import Joints, Trimming
 from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
 
@@ -48,7 +48,7 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
     from splinesdf.kernels.own_chains import own_chains  # Numba loads only when it is used
     from splinesdf.kernels.trim import trim
 
-    boundary, joints = shape.boundary, shape.joints
+    boundary, joints = shape.boundary, joints_at(shape, distance)
     request = trimming(shape, distance, tolerance, smooth)
     count = len(boundary.start)
     bent, reach = np.empty(count, dtype=np.bool_), np.empty((count, 3), dtype=np.int64)
@@ -62,12 +62,17 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
         room = found
 
 
+def joints_at(shape: Shape, distance: float) -> Joints:
+    """How arclets follow one another, seen from the side that an offset is on."""
+    return shape.joints_outside if distance > 0.0 else shape.joints
+
+
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
     """Point, tangent of the shape, speed and curvature of parallels, (n, 6)."""
     from splinesdf.kernels.parallels import parallel_points  # Numba loads only when it is used
 
     rows = np.empty((len(at), 6))
-    parallel_points(shape.joints, elements, np.ascontiguousarray(at), distance, rows)
+    parallel_points(joints_at(shape, distance), elements, np.ascontiguousarray(at), distance, rows)
     return rows
 
 
