@@ -21,6 +21,9 @@ _SHORTEST = 1e-3
 # the offset, along its tangent, than the second share of the tolerance. Larger: tangents jump, and
 # chains of many such joints are off; smaller: rounding in tangents makes corners.
 SMOOTH, _DOUBLED = 1e-7, 1e-3
+# Tangents of compiled pieces are off by as much (radians). Larger: corners are passed over that
+# matter to distances far beyond the size; smaller: smooth curves are cut at their joints there.
+_NOISE = 1e-12
 # Room for stretches at first.
 _ROOM = 64
 
@@ -78,7 +81,7 @@ def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floa
 
 def smooth_turn(distance: float, tolerance: float) -> float:
     """By how much a joint may turn (radians) and still count as smooth."""
-    return min(SMOOTH, _DOUBLED * tolerance / abs(distance)) if distance else SMOOTH
+    return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), _NOISE)) if distance else SMOOTH
 
 
 def trimming(shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH) -> Trimming:
