@@ -243,3 +243,43 @@ def test_thousands_of_contours_over_each_other() -> None:
     # Outside of all of them, the nearest one's circle is the boundary there.
     outside = depth < 0.0
     assert np.max(np.abs(found + depth)[outside]) < 1e-14
+
+
+@pytest.mark.parametrize("line_first", [True, False])
+def test_neighbors_that_cross_once_more_beside_their_joint(line_first: bool) -> None:
+    # A cubic that turns back along the line before it, on one side of it, and crosses it soon. At
+    # the joint the offset of one from the other is zero, exactly or to rounding.
+    rng = np.random.default_rng(5)
+    wrong = []
+    for _ in range(200):
+        corner, away = rng.integers(-60, 60, (2, 2)).astype(float)
+        if np.hypot(*away) < 10.0:
+            continue
+        angle = rng.choice([-1.0, 1.0]) * rng.uniform(0.003, 0.05)
+        c, s = np.cos(angle), np.sin(angle)
+        handle = corner + 0.4 * np.array([c * away[0] - s * away[1], s * away[0] + c * away[1]])
+        side = -np.sign(angle) * np.array([-away[1], away[0]])
+        far = corner + away + 0.7 * side
+        line = np.stack([corner + away, corner])
+        cubic = np.stack([corner, handle, far, far])
+        pieces = [line, cubic, np.stack([far, corner + away])]
+        if not line_first:
+            pieces = [piece[::-1] for piece in pieces[::-1]]
+        shape = ss.Shape.from_pieces([pieces])
+        if not inside_is_on_the_left(shape):
+            wrong.append((line.tolist(), cubic.tolist()))
+    assert not wrong, f"{len(wrong)} wrong: {wrong[0]}"
+
+
+def inside_is_on_the_left(shape: ss.Shape) -> bool:
+    """Whether points just beside all arcs of the boundary have the sides that they should."""
+    boundary = shape.boundary
+    every = np.arange(len(boundary.start))
+    middle, chord = np.full(len(every), 0.5), boundary.end - boundary.start
+    points, ahead = points_at(boundary, every, middle), tangents_at(boundary, every, middle)
+    left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1) / np.hypot(*ahead.T)[:, None]
+    beside = 1e-6 * np.hypot(*chord.T)[:, None] * left
+    inside, outside = (
+        ss.signed_distance(shape, points + sign * beside + boundary.origin) for sign in (1, -1)
+    )
+    return bool((inside < 0.0).all() and (outside > 0.0).all())

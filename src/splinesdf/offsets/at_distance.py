@@ -23,8 +23,9 @@ _CLOSER, _ROUNDS = 0.125, 5
 # Arcs nearer to one another than this share of the largest coordinate meet; but arcs that leave a
 # corner side by side are no farther apart, for rounding, up to the second one from it.
 _APART, _FROM_CORNER = 1e-12, 1e-7
-# Arcs below this share of their loop are rounding. Larger: real ones are lost; smaller: stubs stay.
-_STUB = 1e-11
+# Arcs below this share of their loop, and of the tolerance, are rounding. Larger: real ones are
+# lost; smaller: stubs stay.
+_STUB, _LOOSE = 1e-11, 0.03
 
 
 class Found(NamedTuple):
@@ -83,7 +84,7 @@ def _fit_clear_of_itself(
     allowed = np.full(len(runs.kind), tolerance)
     for _ in range(_ROUNDS):
         arcs, weights, owner = _fitted(shape, runs, distance, allowed)
-        arcs, weights, owner = _without_stubs(arcs, weights, owner, runs.kind, starts)
+        arcs, weights, owner = _without_stubs(arcs, weights, owner, runs.kind, starts, tolerance)
         cuts = np.searchsorted(owner, starts)
         following = np.arange(1, len(arcs) + 1)
         following[cuts[1:] - 1] = cuts[:-1]
@@ -96,7 +97,7 @@ def _fit_clear_of_itself(
 
 
 def _without_stubs(
-    arcs: Floats, weights: Floats, owner: Ints, kind: Ints, starts: Ints
+    arcs: Floats, weights: Floats, owner: Ints, kind: Ints, starts: Ints, tolerance: float
 ) -> tuple[Floats, Floats, Ints]:
     """Leave out arcs that are rounding, and let a longer neighbor reach to where they led.
 
@@ -108,7 +109,7 @@ def _without_stubs(
         arcs.min(axis=1), first
     )
     extent = np.ptp(arcs, axis=1).max(axis=1)
-    stub = extent <= _STUB * size.max(axis=1)[loop]
+    stub = extent <= np.minimum(_STUB * size.max(axis=1), _LOOSE * tolerance)[loop]
     if not stub.any():
         return arcs, weights, owner
     arcs, kept = arcs.copy(), ~stub
