@@ -47,7 +47,7 @@ MOST_ARCS = 3000
 REFUSED_ULPS = 1e3
 KINDS = (
     *("raised", "refused", "ceiling", "memory", "deviation", "lost", "spurious", "winding"),
-    *("area", "loops", "chain", "meet", "many", "stubs", "distance", "judge"),
+    *("area", "loops", "chain", "meet", "many", "stubs", "distance", "judge", "fallback"),
 )
 
 
@@ -94,7 +94,7 @@ def attempt(case: Case, pipe: Connection) -> None:
     began = time.process_time()
     contours: list[Contour] | None = None
     try:
-        contours = ss.offset(shape, case.distance, tolerance=case.tolerance)
+        contours = ss.offset(shape, case.distance, tolerance=case.tolerance, coarse=True)
     except MemoryError:
         trial.failures.append(("memory", "more than the limit"))
     except ss.SplineSDFError as error:
@@ -102,6 +102,8 @@ def attempt(case: Case, pipe: Connection) -> None:
     except Exception as error:  # whatever it is, it is a failure, and the sweep goes on
         trial.failures.append(("raised", f"{type(error).__name__}: {error}"))
     limit(0.0)
+    if contours and any(contour.fitted for contour in contours):
+        trial.failures.append(("fallback", "the level set of a fit"))
     trial.seconds = time.process_time() - began
     pipe.send(trial)
     if contours is not None:

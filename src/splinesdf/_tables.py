@@ -71,6 +71,9 @@ class Joints(NamedTuple):
     # Rows as in `Arclets`, up to the power basis; velocities that are rounding are zero, so that no
     # normal is taken from them.
     arcs: Floats
+    # (n, 2) the point, of those in which several branches meet, that each arclet starts and ends
+    # in; -1 for none, see `splinesdf.curves.vertices`
+    touch: Ints
 
 
 # What an arclet, or a run of an offset, is.
@@ -82,7 +85,6 @@ class Kinds(NamedTuple):
 
     kind: Ints  # (n,) FREE, STRAIGHT or ROUND
     center: Floats  # (n, 2) of a round one
-    radius: Floats  # (n,) of a round one, positive if it bends to the left
 
 
 class Trimming(NamedTuple):

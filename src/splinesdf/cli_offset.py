@@ -12,10 +12,10 @@ import splinesdf as ss
 from splinesdf import report
 from splinesdf.cli_shapes import (
     check_outputs,
+    offset_tolerance_of,
     offsets_of,
     read_shape,
     shape_options,
-    tolerance_of,
     tolerance_option,
 )
 from splinesdf.io.enclosed import check_sides
@@ -36,6 +36,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 @click.command()
 @shape_options
 @tolerance_option
+@click.option("--coarse", is_flag=True, help="Allow a tolerance above a quarter of the distance.")
 @click.option("-d", "--distance", "distances", type=float, multiple=True, help="> 0: outward.")
 @click.option("--step", type=float, help="Inward, < 0: at STEP, 2 STEP, ... until nothing is left.")
 @click.option("-o", "--output", required=True, help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv")
@@ -62,6 +63,7 @@ def offset(
     fill: str | None,
     close: bool,
     tolerance: float | None,
+    coarse: bool,
     distances: tuple[float, ...],
     step: float | None,
     output: str,
@@ -88,7 +90,8 @@ def offset(
     }
     suffix = check_format(output, **options)
     check_outputs(shape, output)
-    tolerance = tolerance_of(source, tolerance)
+    asked = distances if step is None else (step,)
+    tolerance = offset_tolerance_of(source, asked, tolerance, coarse=coarse)
     share = _share(suffix, arcs)
     contours = _contours(source, distances, step, share * tolerance)
     rest = (1.0 - share) * tolerance
@@ -121,8 +124,15 @@ def _contours(
         listed = ", ".join(f"{d:g}" for d in distances)
     else:
         with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
-            contours = ss.offset(source, step=step, tolerance=tolerance)
+            contours = ss.offset(source, step=step, tolerance=tolerance, coarse=True)
         listed = f"{step:g}"
+    fitted = sorted({contour.distance for contour in contours if contour.fitted})
+    if fitted:
+        click.echo(
+            f"note: at {', '.join(f'{d:g}' for d in fitted)} the offset is the level set of a fit, "
+            f"within the tolerance, of many arcs",
+            err=True,
+        )
     if not contours:
         _nothing(source, distances if step is None else (step,), tolerance)
         raise ss.InputError(f"nothing to write: no point of the plane is at {listed}")

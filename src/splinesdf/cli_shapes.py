@@ -12,6 +12,7 @@ import click
 
 import splinesdf as ss
 from splinesdf._atomic import check_target
+from splinesdf.offset import offset_tolerance
 from splinesdf.report import working
 
 _BUILT_IN = {"part": "part.svg"} | {f"gamma{i}": f"gamma{i}.json" for i in (1, 2, 3)}
@@ -37,7 +38,8 @@ def tolerance_option(command: Command) -> Command:
     return click.option(
         "--tolerance",
         type=float,
-        help="Largest error, in the shape's unit. Default: 1e-3 of its larger side.",
+        help="Largest error, in the shape's unit. Default: 1e-3 of its larger side; of an offset, "
+        "1e-2 of the smallest distance at most.",
     )(command)
 
 
@@ -73,11 +75,25 @@ def tolerance_of(shape: ss.Shape, tolerance: float | None) -> float:
     return tolerance
 
 
+def offset_tolerance_of(
+    shape: ss.Shape, distances: Iterable[float], tolerance: float | None, *, coarse: bool
+) -> float:
+    """The tolerance of offsets, or the default, which is then told."""
+    found = offset_tolerance(shape, distances, tolerance, coarse=coarse)
+    if tolerance is None:
+        click.echo(
+            f"tolerance {found:.4g}: 1e-3 of the larger side, at most 1e-2 of the smallest "
+            f"distance, as none was given",
+            err=True,
+        )
+    return found
+
+
 def offsets_of(shape: ss.Shape, distances: Iterable[float], tolerance: float) -> list[ss.Contour]:
     """The offsets at distances, one after the other."""
     contours = []
     with working("offsetting (the first run compiles)") as say:
         for distance in distances:
             say(f"offsetting {shape.name} by {distance:g}")
-            contours += ss.offset(shape, distance, tolerance=tolerance)
+            contours += ss.offset(shape, distance, tolerance=tolerance, coarse=True)
     return contours

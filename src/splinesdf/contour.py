@@ -42,6 +42,11 @@ class Contour:
     parent : Contour, optional
         The contour of the same level that directly encloses this one: None for an outermost one,
         an outer one for a hole, a hole for what lies in it.
+    tolerance : float, optional
+        Of an offset: how far from its distance a point of it may be.
+    fitted : bool
+        Of an offset: it is the level set of a fit, as parallels left loose ends. It is within the
+        tolerance, but has many arcs, and none of its lines, circles and corners are exact.
     """
 
     arcs: Floats
@@ -50,6 +55,8 @@ class Contour:
     distance: float = 0.0
     y_down: bool = False
     parent: Contour | None = None
+    tolerance: float | None = None
+    fitted: bool = False
 
     def __post_init__(self) -> None:
         if self.arcs.ndim != 3 or self.arcs.shape[1:] != (3, 2) or len(self.arcs) == 0:

@@ -10,6 +10,7 @@ from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets, Joints
 from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import angles, derivatives_at, points_at
+from splinesdf.curves.vertices import Vertices
 
 # A velocity at an end below the first, as a share of the largest coordinate, and below the second,
 # as a share of what the next derivative is good for, is rounding: the arclet stands still there.
@@ -28,13 +29,22 @@ _APART = 16 * 2.220446049250313e-16
 # Rounding in a velocity, as a share of the largest coordinate; over its length, in its direction:
 # turns within that are none. Larger: real corners are rounded off over 1e-15 of the size.
 _DIRECTION = 16 * 2.220446049250313e-16
+# Pieces of a higher degree than this are compiled: they agree with their curve to 4 ulp, and their
+# velocities at the ends to the square of the degree times as much, which is this factor.
+_DRAWN, _COMPILED = 3, 32.0
 # Where one piece of the shape was cut it does not turn; tangents of very short arclets differ by
 # less than this (radians), for rounding. Larger: corners of nearly cusps might be taken for it.
 _CUT = 1e-5
 
 
-def joints(boundary: Arclets) -> Joints:
-    """Loops, turns and tangents of a boundary."""
+def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
+    """Loops, turns and tangents of a boundary, seen from inside or outside where it touches itself.
+
+    Seen from either side the same arclets make up different loops.
+    """
+    following = boundary.following.copy()
+    following[vertices.ends] = vertices.outside if outside else vertices.inside
+    boundary = boundary._replace(following=following)
     boundary = boundary._replace(following=_closed(boundary))
     order, loops = cycles(boundary.following)
     sizes = np.diff(loops)
@@ -54,8 +64,10 @@ def joints(boundary: Arclets) -> Joints:
     cut &= boundary.piece == boundary.piece[boundary.following]
     cut &= np.abs(turn) < _CUT
     rounding = _DIRECTION * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
+    noise = np.where(degrees(boundary) > _DRAWN, _COMPILED * rounding, rounding)
     next_length = lengths[0][boundary.following]
-    none = cut | (np.abs(turn) < rounding * (1.0 / lengths[1] + 1.0 / next_length))
+    next_noise = noise[boundary.following]
+    none = cut | (np.abs(turn) < noise / lengths[1] + next_noise / next_length)
     turn[none] = 0.0
     # Both have the tangent of the one that knows it better.
     later = np.flatnonzero(none & (lengths[1] >= next_length))
@@ -68,7 +80,9 @@ def joints(boundary: Arclets) -> Joints:
     for undecided in cusps[side == 0.0]:
         _close_up(turn, early + late, int(undecided), order, loops)
     tangents = np.concatenate([leaving, arriving], axis=1)
-    return Joints(order, loops, place, boundary.following, turn, tangents, turning, arcs)
+    return Joints(
+        order, loops, place, boundary.following, turn, tangents, turning, arcs, vertices.touch
+    )
 
 
 def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:

@@ -18,6 +18,10 @@ _ROUNDING_GAP = 1e-13
 # A gap up to this share of the size is a drawing program's printed digits: it is bridged by a
 # straight piece, so the curve itself stays as drawn. Anything wider is an open contour.
 _PRINTED_GAP = 1e-6
+# A curve whose control points are within this share of the largest coordinate of the line through
+# its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
+# curves that run to and fro along a line keep arcs that only rounding gives a side.
+_STRAIGHT = 4 * 2.220446049250313e-16
 
 
 def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[list[Floats]]:
@@ -76,11 +80,33 @@ def _as_control(piece: ArrayLike) -> Floats:
     return control
 
 
+def _straightened(piece: Floats, largest: float) -> Floats:
+    """A copy, only its ends if it has no extent across the line through them.
+
+    Where such a curve runs to and fro, or beyond its ends, it bounds nothing.
+    """
+    if len(piece) == 2:
+        return piece.copy()
+    apart = piece - piece[0]
+    chord = apart[-1]
+    reach = float(np.abs(apart).max())
+    if not chord.any():
+        # Out and back again: along the line to the farthest control point, if they are on one.
+        chord = apart[int(np.argmax(np.abs(apart).max(axis=1)))]
+    length = float(np.hypot(*chord))
+    if reach == 0.0 or length == 0.0:
+        return piece[[0, -1]]
+    unit = chord / length
+    across = float(np.abs(unit[0] * apart[:, 1] - unit[1] * apart[:, 0]).max())
+    return piece[[0, -1]] if across <= _STRAIGHT * largest else piece.copy()
+
+
 def _closed_loop(
     loop: list[Floats], number: int, *, size: float, largest: float, close: bool
 ) -> list[Floats]:
     """The loop's pieces, none of length zero, each starting exactly where the last one ended."""
-    pieces = [piece.copy() for piece in loop if np.any(piece != piece[0])]
+    pieces = [_straightened(piece, largest) for piece in loop]
+    pieces = [piece for piece in pieces if np.any(piece != piece[0])]
     result: list[Floats] = []
     for index, piece in enumerate(pieces):
         result.append(piece)

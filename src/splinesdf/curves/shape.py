@@ -22,6 +22,7 @@ from splinesdf.curves.kinds import kinds
 from splinesdf.curves.loops import closed_loops
 from splinesdf.curves.nurbs import nurbs_pieces
 from splinesdf.curves.svg_path import parse_path
+from splinesdf.curves.vertices import Vertices, vertices
 from splinesdf.errors import InputError
 
 Fill = Literal["nonzero", "evenodd"]
@@ -298,8 +299,19 @@ class Shape:
 
     @cached_property
     def joints(self) -> Joints:
-        """How the arcs of the boundary follow one another, made on first use."""
-        return joints(self.boundary)
+        """How the arcs of the boundary follow one another around the inside, made on first use."""
+        return joints(self.boundary, self._vertices, outside=False)
+
+    @cached_property
+    def joints_outside(self) -> Joints:
+        """How they do around the outside, which differs where the boundary touches itself."""
+        if not len(self._vertices.ends):
+            return self.joints
+        return joints(self.boundary, self._vertices, outside=True)
+
+    @cached_property
+    def _vertices(self) -> Vertices:
+        return vertices(self.boundary)
 
     @cached_property
     def kinds(self) -> Kinds:

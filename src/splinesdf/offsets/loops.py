@@ -15,7 +15,7 @@ from splinesdf.curves.geometry import angles
 from splinesdf.curves.joints import CUSP, cycles
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
-from splinesdf.offsets.trimmed import SMOOTH, Stretches, parallels
+from splinesdf.offsets.trimmed import SMOOTH, Stretches, joints_at, parallels, smooth_turn
 
 # Steps of Newton's method from where trimming left two stretches to where they cross.
 _STEPS = 6
@@ -65,7 +65,8 @@ class Loops(NamedTuple):
 
 def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: float) -> Loops | None:
     """Join stretches to loops, or None if one end finds no start within the tolerance."""
-    follows = _run_on(shape, stretches, distance)
+    smooth = smooth_turn(distance, tolerance)
+    follows = _run_on(shape, stretches, distance, smooth)
     if distance:  # the boundary itself is on neither side
         stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)
     if not len(follows):
@@ -81,7 +82,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     loose = Loose(stretches.elements, spans, points, ends, follows[ends])
     _draw_back(shape, loose, distance)
     _to_crossings(shape, loose, distance)
-    _fill_in(shape, loose, distance)
+    _fill_in(shape, loose, distance, smooth)
     bridges = _bridges(shape, points, ends, follows[ends], distance, tolerance)
     if bridges is None:
         return None
@@ -89,19 +90,19 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     return _as_loops(Stretches(stretches.elements, spans), follows, points, bridges, least)
 
 
-def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
+def _run_on(shape: Shape, stretches: Stretches, distance: float, smooth: float) -> Ints:
     """The stretch that each one runs on into, -1 where it ends in a corner: (n,)."""
     elements, spans = stretches
     arclet, corner = elements.T
-    boundary, joints = shape.boundary, shape.joints
-    turns = (corner == 0) & (joints.turn[arclet] * distance > SMOOTH * abs(distance))
+    boundary, joints = shape.boundary, joints_at(shape, distance)
+    turns = (corner == 0) & (joints.turn[arclet] * distance > smooth * abs(distance))
     # What comes next: the arc around the end, or the next arclet.
     wanted = np.where(turns, 2 * arclet + 1, 2 * joints.following[arclet])
     opening = np.full(2 * len(boundary.start), -1)
     fresh = np.flatnonzero(spans[:, 0] == 0.0)
     opening[2 * arclet[fresh] + corner[fresh]] = fresh
     # In a corner toward the offset the parallels cross, be it too near to their ends for trimming.
-    cross = (corner == 0) & (joints.turn[arclet] * distance < -SMOOTH * abs(distance))
+    cross = (corner == 0) & (joints.turn[arclet] * distance < -smooth * abs(distance))
     return np.where((spans[:, 1] == 1.0) & ~cross, opening[wanted], -1)
 
 
@@ -120,7 +121,7 @@ def _without_wrong_sides(
     Such are slivers between the branches of a cusp, and short ones where boundaries touch.
     """
     right = np.ones(len(follows), dtype=np.bool_)
-    if (np.abs(shape.joints.turn) > np.pi - CUSP).any():
+    if (np.abs(joints_at(shape, distance).turn) > np.pi - CUSP).any():
         asked = np.arange(len(follows))
     else:
         asked = np.flatnonzero((follows < 0) | _led_to_by_none(follows))
@@ -210,7 +211,7 @@ def _to_crossings(shape: Shape, loose: Loose, distance: float) -> None:
     points[1, one], points[0, other] = at_a, at_b
 
 
-def _fill_in(shape: Shape, loose: Loose, distance: float) -> None:
+def _fill_in(shape: Shape, loose: Loose, distance: float, smooth: float) -> None:
     """Let smooth parallels run on where they were cut though nothing is nearer, but for rounding.
 
     So they are beside a point of the shape in which another branch touches this one.
@@ -219,7 +220,8 @@ def _fill_in(shape: Shape, loose: Loose, distance: float) -> None:
     (i, corner), (j, other_corner) = elements[one].T, elements[other].T
     end, start = spans[one, 1], spans[other, 0]
     same = (i == j) & (end < start)
-    next_ = (shape.joints.following[i] == j) & (np.abs(shape.joints.turn[i]) <= SMOOTH)
+    joints = joints_at(shape, distance)
+    next_ = (joints.following[i] == j) & (np.abs(joints.turn[i]) <= smooth)
     gap = np.hypot(*(points[0, other, :2] - points[1, one, :2]).T)
     cut = (corner + other_corner == 0) & (same | next_) & (gap > 0.0)
     cut &= gap <= _SHALLOW * shape.size
