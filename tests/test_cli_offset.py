@@ -17,7 +17,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.cli import main
 from splinesdf.io.written import measure_file
-from tests.chains import circle, circular
+from tests.chains import circular
 from tests.shapes import gamma
 
 Run = Callable[..., tuple[int, str, str]]
@@ -66,7 +66,7 @@ def test_check_measures_what_is_there(tmp_path: Path, name: str) -> None:
     disk = ss.Shape.from_formula("2*cos(t)", "2*sin(t)")
     aside = circular(3.0, 0.3 + 0j, 0.1, 2.0 * math.pi, 5, distance=1.0)
     ss.write(tmp_path / name, [aside], tolerance=1e-7)
-    worst = measure_file(tmp_path / name, disk, [1.0])
+    worst = measure_file(tmp_path / name, disk, [1.0], 1e-4)
     assert worst.deviation == pytest.approx(0.3, abs=2e-7)
     assert worst.distance == 1.0
     assert worst.curves == {1.0: 1}
@@ -81,7 +81,7 @@ def test_check_finds_the_top_of_a_bump(tmp_path: Path, name: str) -> None:
     ring = circular(3.0, 0j, 0.4, 2.0 * math.pi, 4, distance=1.0)
     bumpy = replace(ring, arcs=ring.arcs * [1.0, 3.05 / 3.0])
     ss.write(tmp_path / name, [bumpy], tolerance=1e-6)
-    worst = measure_file(tmp_path / name, disk, [1.0])
+    worst = measure_file(tmp_path / name, disk, [1.0], 1e-4)
     assert worst.deviation == pytest.approx(0.05, abs=1.1e-6)
 
 
@@ -137,10 +137,11 @@ def test_arcs_reach_the_drawing(run: Run, tmp_path: Path) -> None:
 
 def test_steps_are_handed_on(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = {}
+    real = ss.offset
 
     def offset(shape: ss.Shape, **options: float) -> list[ss.Contour]:
         asked.update(options)
-        return [circle(1.0 + d, distance=d) for d in (0.5, 1.0)]
+        return real(shape, [0.5, 1.0], tolerance=options["tolerance"])
 
     monkeypatch.setattr(ss, "offset", offset)
     status, out, _ = run("gamma1", "--step", "0.5", "--tolerance", "1e-3", "-o", "a.geojson")

@@ -18,9 +18,11 @@ from splinesdf.cli_shapes import (
     shape_options,
     tolerance_option,
 )
+from splinesdf.io.enclosed import check_sides
 from splinesdf.io.output import check_format
 from splinesdf.io.writers.options import DIRECTIONS, UNITS
 from splinesdf.io.written import measure_file
+from splinesdf.offset import deviation
 from splinesdf.report import working
 
 # How much of the tolerance the offset gets; the file has the rest. DXF without --arcs is exact. In
@@ -51,7 +53,11 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
     type=click.Choice(DIRECTIONS),
     help="G-code: for a spindle that turns clockwise.  [default: climb]",
 )
-@click.option("--check", is_flag=True, help="Read the file back, and measure it: status 1 if off.")
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Read the file back, measure it and what it encloses: status 1 if off.",
+)
 def offset(
     shape: str,
     fill: str | None,
@@ -93,8 +99,13 @@ def offset(
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
     report.print_offsets(source, contours, distances, tolerance)
     report.print_written(output)
+    passed = _deviation(source, contours, tolerance)
     if check:
-        _check(output, source, contours, tolerance)
+        # In steps there is to be nothing left at the next one.
+        ended = () if step is None else ((len(distances) + 1) * step,)
+        passed &= _check(output, source, contours, (*distances, *ended), tolerance)
+    if not passed:
+        raise click.exceptions.Exit(1)
 
 
 def _share(suffix: str, arcs: bool) -> float:
@@ -123,18 +134,54 @@ def _contours(
             err=True,
         )
     if not contours:
+        _nothing(source, distances if step is None else (step,), tolerance)
         raise ss.InputError(f"nothing to write: no point of the plane is at {listed}")
     return contours
 
 
-def _check(output: str, source: ss.Shape, contours: list[ss.Contour], tolerance: float) -> None:
-    """Measure the file; status 1 if it is not within the tolerance, or not all there."""
+def _nothing(source: ss.Shape, distances: tuple[float, ...], tolerance: float) -> None:
+    """Nothing is left only if no point is nearer than an offset would enclose."""
+    for distance in distances:
+        sides = check_sides(source, distance, [], tolerance)
+        if sides.wrong:
+            _complain(report.wrong_sides(sides))
+            raise click.exceptions.Exit(1)
+
+
+def _deviation(source: ss.Shape, contours: list[ss.Contour], tolerance: float) -> bool:
+    """Whether the contours themselves keep the tolerance, as far as they are measured."""
+    off = deviation(source, contours)
+    if not off <= tolerance:
+        _complain(
+            f"expected a deviation of at most {tolerance:.4g}, got {off:.4g}: do not use the file; "
+            "try another tolerance, or move the shape nearer to the origin"
+        )
+    return bool(off <= tolerance)
+
+
+def _check(
+    output: str,
+    source: ss.Shape,
+    contours: list[ss.Contour],
+    distances: tuple[float, ...],
+    tolerance: float,
+) -> bool:
+    """Measure the file: whether it is within the tolerance, all there, and nothing twice."""
     wanted = Counter(float(contour.distance) for contour in contours)
     with working(f"reading {Path(output).name} back"):
-        worst = measure_file(output, source, sorted(wanted))
+        worst = measure_file(output, source, sorted({*wanted, *distances}), tolerance)
     report.print_check(output, worst, tolerance)
     if worst.curves != wanted:
-        click.echo(f"splinesdf: expected curves at {dict(wanted)}, read {worst.curves}", err=True)
-        raise click.exceptions.Exit(1)
-    if not worst.deviation <= tolerance:
-        raise click.exceptions.Exit(1)
+        _complain(f"expected curves at {dict(wanted)}, read {worst.curves}")
+    if worst.gap > tolerance:
+        _complain(f"expected closed curves, got one whose ends are {worst.gap:.4g} apart")
+    if worst.points:
+        _complain(f"expected curves with an extent, got {worst.points} that are points")
+    for sides in worst.sides:
+        if sides.wrong:
+            _complain(report.wrong_sides(sides))
+    return worst.curves == wanted and worst.keeps(tolerance)
+
+
+def _complain(text: str) -> None:
+    click.echo(f"splinesdf: {text}", err=True)

@@ -12,6 +12,7 @@ from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import MissingExtraError
 from splinesdf.fit import FitResult
+from splinesdf.io.enclosed import Sides
 from splinesdf.io.written import Worst
 from splinesdf.meshes import Box
 from splinesdf.offset import deviation
@@ -135,9 +136,26 @@ def print_check(path: str, worst: Worst, tolerance: float) -> None:
         check=f"{path}, read back: {sum(worst.curves.values())} curves",
         worst=f"{worst.deviation:.4g} from the distance {worst.distance:+g}",
         at=f"({x!r}, {y!r}), as in the file",
+        sides=f"{sum(s.asked for s in worst.sides):,} points asked, "
+        f"{sum(s.wrong for s in worst.sides):,} on the wrong side",
         verdict=f"within the tolerance {tolerance:.4g}"
-        if worst.deviation <= tolerance
+        if worst.keeps(tolerance)
         else f"NOT within the tolerance {tolerance:.4g}",
+    )
+
+
+def wrong_sides(sides: Sides) -> str:
+    """What curves of one distance have lost, have twice, or have the wrong way around."""
+    x, y = sides.point
+    parts = (
+        (sides.lost, "nearer, but not enclosed (a contour is lost, or there twice)"),
+        (sides.spurious, "farther, but enclosed (a hole is lost, or a contour there twice)"),
+        (sides.turned, "enclosed by contours that run the wrong way around"),
+    )
+    found = ", ".join(f"{count} {text}" for count, text in parts if count)
+    return (
+        f"at distance {sides.distance:+g}, of {sides.asked:,} points {found}: "
+        f"the worst at ({x:.9g}, {y:.9g}), {sides.apart:.3g} from where a contour should be"
     )
 
 
