@@ -226,7 +226,7 @@ def info(file: str, fill: str | None, close: bool) -> None:
             cells=f"{len(spline.ordinates):,} ({kind})",
             domain=report.box_text(spline.domain),
             y="downward" if spline.y_down else "upward",
-            size=f"{Path(file).stat().st_size:,} bytes",
+            size=_size_of(file),
             shape="not in the file" if spline.shape is None else report.describe(spline.shape),
             **report.provenance(spline.made),
         )
@@ -239,6 +239,13 @@ def info(file: str, fill: str | None, close: bool) -> None:
             box=report.box_text(shape.box),
             y="downward" if shape.y_down else "upward",
         )
+
+
+def _size_of(file: str) -> str:
+    try:
+        return f"{Path(file).stat().st_size:,} bytes"
+    except OSError:  # it was there when it was read
+        return "no longer there"
 
 
 @commands.command()

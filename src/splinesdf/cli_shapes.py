@@ -60,7 +60,11 @@ def check_outputs(source: str, *outputs: str | None) -> None:
         if output is None:
             continue
         check_target(output)
-        if Path(output).exists() and Path(source).exists() and Path(output).samefile(source):
+        try:
+            lost = Path(output).samefile(source)
+        except (OSError, ValueError):  # one of them does not exist
+            lost = False
+        if lost:
             raise ss.InputError(f"{output!r} is the input, it would be lost: name another file")
 
 
