@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from splinesdf._arrays import Floats, positive
+from splinesdf._arrays import Floats, as_floats, finite, positive
 from splinesdf.errors import InputError
 
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
@@ -53,6 +53,9 @@ class Contour:
     parent: Contour | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
+        for name in ("arcs", "weights"):
+            object.__setattr__(self, name, as_floats(getattr(self, name), name))
+        object.__setattr__(self, "distance", finite(self.distance, "distance"))
         if self.arcs.ndim != 3 or self.arcs.shape[1:] != (3, 2) or len(self.arcs) == 0:
             raise InputError(f"expected arcs of shape (n, 3, 2), n > 0, got {self.arcs.shape}")
         if self.weights.shape != self.arcs.shape[:1]:

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import positive
+from splinesdf._arrays import as_floats, finite, positive, shown
 from splinesdf.contour import Contour, evaluate
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
@@ -82,12 +82,9 @@ def offset(
         return _until_nothing_is_left(shape, step, asked)
     if distances is None:
         raise InputError("expected distances or a step, got neither")
-    try:
-        wanted = np.atleast_1d(np.asarray(distances, dtype=np.float64))
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected distances as numbers, got {distances!r}") from error
+    wanted = np.atleast_1d(as_floats(distances, "distances"))
     if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
-        raise InputError(f"expected one or more finite distances, got {distances!r}")
+        raise InputError(f"expected one or more finite distances, got {shown(distances)}")
     _check_rounding(shape, float(np.abs(wanted).max()), asked)
     return [contour for d in wanted.tolist() for contour in _at(shape, d, asked)]
 
@@ -102,7 +99,8 @@ def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
 
 
 def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[Contour]:
-    if not (isinstance(step, int | float | np.number) and math.isfinite(step) and step < 0.0):
+    step = finite(step, "step")
+    if step >= 0.0:
         raise InputError(
             f"expected a negative step, inward, until nothing is left, got {step!r}: "
             "outward there is no end, so give the distances"
@@ -110,7 +108,7 @@ def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[
     _check_rounding(shape, 0.0, tolerance)
     result: list[Contour] = []
     number = 1
-    while found := _at(shape, number * float(step), tolerance):
+    while found := _at(shape, number * step, tolerance):
         result += found
         number += 1
     return result

@@ -148,7 +148,10 @@ def _rows(degree: Ints, start: Floats, end: Floats, power: Floats, bernstein: Fl
         table = bernstein[chosen, :, : 2 * d + 1].reshape(-1, 3 * (2 * d + 1))
         rows[chosen, 5 + 2 * d : 5 + 2 * d + table.shape[1]] = table
     line = degree == 1
-    rows[line, 7] = 1.0 / np.sum(power[line, 1] ** 2, axis=1)
+    squared = np.sum(power[line, 1] ** 2, axis=1)
+    # So short that the inverse would overflow: its first point is as good as any other.
+    point = squared < np.finfo(np.float64).tiny
+    rows[line, 7] = np.where(point, 0.0, 1.0 / np.where(point, 1.0, squared))
     return rows
 
 
