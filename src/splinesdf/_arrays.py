@@ -22,8 +22,11 @@ LARGEST = 1e60
 _KINDS = {"b": "booleans", "c": "complex numbers", "M": "dates", "m": "time spans"} | dict.fromkeys(
     "SUT", "texts"
 )
-# Levels of lists in lists. More: none, as NumPy's arrays have no more axes; fewer: a mask is missed.
+# Levels of lists in lists. More: none, as arrays have no more axes; fewer: a mask is missed.
 _DEEPEST = 64
+# What is shorter than this share of the size counts as a point. Shorter: squares of its length, and
+# quotients by it, leave the range of floats; longer: it comes near to rounding, which is 1e-16.
+NOTHING = 1e-20
 
 
 def as_floats(values: ArrayLike, what: str) -> Floats:

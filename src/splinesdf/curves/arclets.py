@@ -311,7 +311,11 @@ def _most_bent(arcs: Floats) -> Floats:
     """The largest curvature times the length of the chord."""
     low, high, _ = curvature_ranges(arcs)
     chord = arcs[:, -1] - arcs[:, 0]
-    return np.asarray(np.maximum(high, -low) * np.hypot(chord[:, 0], chord[:, 1]))
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    # One that comes back to its start is bent, however long: infinite times zero is no number.
+    return np.where(length > 0.0, np.maximum(high, -low), np.inf) * np.where(
+        length > 0.0, length, 1.0
+    )
 
 
 def _tables(arcs: Arcs, most: int) -> tuple[Floats, Floats, Floats, Floats]:
