@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 import splinesdf as ss
+from splinesdf._arrays import positive
 from splinesdf._atomic import check_target
 from splinesdf.report import working
 
@@ -71,7 +72,7 @@ def check_outputs(source: str, *outputs: str | None) -> None:
 def tolerance_of(shape: ss.Shape, tolerance: float | None) -> float:
     """The tolerance, or the default, which is then told."""
     if tolerance is not None:
-        return tolerance
+        return positive(tolerance, "tolerance")
     tolerance = _SHARE * shape.size
     click.echo(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given", err=True)
     return tolerance

@@ -89,8 +89,13 @@ def offset(
     return [contour for d in wanted.tolist() for contour in _at(shape, d, asked)]
 
 
+def least_tolerance(shape: Shape, farthest: float) -> float:
+    """The least tolerance of offsets up to a distance: what rounding leaves room for."""
+    return _LEAST_TOLERANCE * max(*map(abs, shape.box), farthest)
+
+
 def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
-    least = _LEAST_TOLERANCE * max(*map(abs, shape.box), farthest)
+    least = least_tolerance(shape, farthest)
     if tolerance < least:
         raise InputError(
             f"expected a tolerance of at least {least:.2g}, above the rounding of the coordinates, "

@@ -120,9 +120,9 @@ def bounding(outline: Arclets, parts: Parts, sides: Sides, touching: float) -> t
     keep |= tip
     # The ends of a sliver that is closed: its sides are gone, they would be left alone.
     short = ~parts.closed & (sides.length <= MERGE * touching)
-    before = np.empty(len(keep), dtype=np.int64)
-    before[parts.following] = np.arange(len(keep))
-    alone = short & ~(keep[parts.following] | keep[before])
+    previous = np.empty(len(keep), dtype=np.int64)
+    previous[parts.following] = np.arange(len(keep))
+    alone = short & ~(keep[parts.following] | keep[previous])
     return keep & ~alone, left
 
 
