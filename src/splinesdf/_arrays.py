@@ -45,12 +45,14 @@ def as_floats(values: ArrayLike, what: str) -> Floats:
     try:
         array = np.asarray(values)
     except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(f"expected {what} as numbers: {_one_line(error)}") from error
+        reason = _one_line(error)
+        raise InputError(f"expected {what} as numbers, got {shown(values)}: {reason}") from error
     if array.dtype.kind == "O":
         numbers = [as_number(value, what) for value in array.flat]
         return np.array(numbers, dtype=np.float64).reshape(array.shape)
     if array.dtype.kind not in "fiu":
         got = _KINDS.get(array.dtype.kind, f"an array of {array.dtype}")
+        got = shown(values) if array.ndim == 0 else got
         raise InputError(f"expected {what} as numbers, got {_one_line(got)}")
     if array.dtype.itemsize <= 8:
         return np.asarray(array, dtype=np.float64, order="C")

@@ -18,6 +18,7 @@ from splinesdf._tables import NOTHING, Arclets, Cells, Feet
 from splinesdf.culling import candidates_of_cells
 from splinesdf.curves.geometry import derivatives_at, points_at, turns
 from splinesdf.curves.shape import Shape
+from splinesdf.errors import InputError
 from splinesdf.meshes.mesh import Box, check_domain
 
 # Closer to the boundary than this share of the size, the vector from the closest point is mostly
@@ -270,7 +271,10 @@ def _farthest(max_distance: float | None) -> float:
 
 def node_count(count: int, name: str) -> int:
     """How many nodes a grid has along a side, from 2 on, or an `InputError`."""
-    return whole(count, name, least=2, most=_MOST_NODES)
+    number = whole(count, f"the number of nodes {name}", least=0, most=_MOST_NODES)
+    if number < 2:
+        raise InputError(f"expected at least 2 nodes each way, got {number} for {name}")
+    return number
 
 
 def _block_size(count: int) -> int:

@@ -104,16 +104,19 @@ def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
 
 
 def _until_nothing_is_left(shape: Shape, step: float, tolerance: float) -> list[Contour]:
-    step = finite(step, "step")
-    if step >= 0.0:
+    try:
+        size = finite(step, "step")
+    except InputError:
+        size = 0.0
+    if size >= 0.0:
         raise InputError(
-            f"expected a negative step, inward, until nothing is left, got {step!r}: "
+            f"expected a negative step, inward, until nothing is left, got {shown(step)}: "
             "outward there is no end, so give the distances"
         )
     _check_rounding(shape, 0.0, tolerance)
     result: list[Contour] = []
     number = 1
-    while found := _at(shape, number * step, tolerance):
+    while found := _at(shape, number * size, tolerance):
         result += found
         number += 1
     return result

@@ -24,6 +24,7 @@ from splinesdf._arrays import (
     as_floats,
     as_points,
     largest_coordinate,
+    shown,
     whole,
 )
 from splinesdf.curves.interpolate import compile_curve
@@ -207,6 +208,8 @@ def _control(control: ArrayLike) -> Floats:
 
 
 def _degree(degree: SupportsIndex) -> int:
+    if isinstance(degree, float) or not hasattr(type(degree), "__index__"):
+        raise InputError(f"expected a degree as an integer, got {shown(degree)}")
     return whole(degree, "degree", least=1, most=_HIGHEST)
 
 

@@ -51,8 +51,10 @@ class Milling:
         if depth < 0.0:
             raise InputError(f"expected a depth below the surface, 0 or more, got {depth:g}")
         start = as_floats(self.start, "start")
-        if start.shape != (2,) or not np.isfinite(start).all():
-            raise InputError(f"expected two finite numbers for start, got {shown(self.start)}")
+        if start.shape != (2,):
+            raise InputError(f"expected two numbers for start, got {shown(self.start)}")
+        if not np.isfinite(start).all():
+            raise InputError(f"expected a finite start, got {shown(self.start)}")
         if self.direction not in DIRECTIONS:
             raise InputError(f"expected climb or conventional, got {self.direction!r}")
 
