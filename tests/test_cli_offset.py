@@ -17,7 +17,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.cli import main
 from splinesdf.io.written import measure_file
-from tests.chains import circular
+from tests.chains import circle, circular
 from tests.shapes import gamma
 
 Run = Callable[..., tuple[int, str, str]]
@@ -197,3 +197,66 @@ def test_an_eighth_of_the_tolerance_makes_the_fewest_arcs() -> None:
         counts[share] = sum(len(ss.as_arcs(c, tolerance=rest).arcs) for c in contours)
     assert counts[0.125] < 0.9 * counts[0.5]
     assert np.isfinite(list(counts.values())).all()
+
+
+def test_the_message_names_the_tolerance_that_was_given(run: Run) -> None:
+    """Not the offset's share of it, which was once told: -0.875 for -1."""
+    for name in FORMATS:
+        for given in ("-1", "0", "nan", "-0.0123", "inf"):
+            status, _, err = run("gamma1", "-d", "0.1", f"--tolerance={given}", "-o", name)
+            assert status == 2
+            assert re.search(rf"got {re.escape(given)}(\s|$|:)", err), err
+        status, _, err = run("gamma1", "-d", "0.1", "--tolerance", "1.25e-14", "-o", name)
+        assert status == 2
+        assert "1.25e-14" in err
+        least = re.search(r"at least (\S+) for", err)
+        assert least is not None, err
+        assert float(least[1]) > 1.25e-14
+
+
+def test_what_the_library_says_of_a_share_names_the_whole(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def offset(*_: object, tolerance: float, **__: object) -> list[ss.Contour]:
+        raise ss.InputError(f"no such tolerance as {tolerance:g}")
+
+    monkeypatch.setattr(ss, "offset", offset)
+    _, _, err = run("gamma1", "-d", "0.1", "--tolerance", "0.5", "-o", "a.svg")
+    assert "0.4375" in err
+    assert "tolerance 0.5" in err
+
+
+def test_no_point_of_the_plane_is_said_only_where_it_is_true(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ss, "offset", lambda *_, **__: [])  # as with a huge tolerance
+    for distances, there in (
+        (("-0.4",), True),  # the ellipse is 0.444 deep
+        (("-0.5",), False),
+        (("-0.5", "-7"), False),
+        (("-0.5", "-0.1"), True),
+        (("0.1",), True),
+        (("0",), True),
+    ):
+        asked = [word for d in distances for word in ("-d", d)]
+        status, _, err = run("gamma1", *asked, "--tolerance", "9", "-o", "a.svg")
+        assert status == 2
+        assert ("no point of the plane" in err) == (not there)
+        assert ("tolerance 9" in err) == there
+    _, _, err = run("gamma1", "--step", "-0.4", "--tolerance", "9", "-o", "a.svg")
+    assert "no point of the plane" not in err
+
+
+def test_nothing_is_left_is_said_only_where_it_is_true(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def offset(_: ss.Shape, distance: float, **__: object) -> list[ss.Contour]:
+        return [circle(1.0, distance=distance)] if distance > 0.0 else []
+
+    monkeypatch.setattr(ss, "offset", offset)
+    asked = ("-d", "0.5", "-d", "-0.4", "-d", "-0.5", "--tolerance", "9", "-o", "a.csv")
+    status, out, err = run("gamma1", *asked)
+    assert status == 0, err
+    told = {line.split()[0]: line for line in out.splitlines() if re.match(r"\s*[+-]\d", line)}
+    assert "nothing as wide as the tolerance" in told["-0.4"]
+    assert "nothing is left" in told["-0.5"]

@@ -293,3 +293,28 @@ def test_circles_that_overlap(drawn: list[tuple[float, float, float, bool]], fil
         loop = circle(x, y, radius)
         loops.append(reversed_loop(loop) if backwards else loop)
     check_curves(loops, fill, seed=9)
+
+
+@pytest.mark.parametrize("thickness", [1e-320, 1e-20, 1e-15, 3e-15, 1e-14, 3e-14, 1e-13])
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+@pytest.mark.parametrize("corners", [3, 4, 5])
+def test_a_sliver_that_is_closed_leaves_nothing(
+    thickness: float, turn: float, corners: int
+) -> None:
+    """Of its sides nothing counts; its short ends once stayed and attracted the distance."""
+    h = thickness
+    drawn = {
+        3: [(0.0, 0.0), (4.0, 0.0), (4.0, h)],
+        4: [(0.0, 0.0), (4.0, 0.0), (4.0, h), (0.0, h)],
+        5: [(0.0, 0.0), (4.0, 0.0), (4.0 + h, h / 2), (4.0, h), (0.0, h)],
+    }[corners]
+    turned = np.array(drawn) @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+    square = np.array([(10.0, 0.0), (11.0, 0.0), (11.0, 1.0), (10.0, 1.0)])
+    pieces = [[*np.stack([loop, np.roll(loop, -1, axis=0)], axis=1)] for loop in (square, turned)]
+    points = np.random.default_rng(4).uniform(-1.0, 12.0, (200, 2))
+    found = ss.signed_distance(ss.Shape.from_pieces(pieces), points)
+    alone = ss.signed_distance(ss.Shape.from_pieces(pieces[:1]), points)
+    along = np.clip(points @ (turned[1] / 16.0), 0.0, 1.0)[:, None] * turned[1]
+    whole = np.minimum(alone, np.hypot(*(points - along).T))
+    # All of it, or nothing of it: which, is a matter of rounding.
+    assert np.allclose(found, alone, atol=1e-12) or np.allclose(found, whole, atol=1e-12)

@@ -18,11 +18,12 @@ from splinesdf.cli_shapes import (
     shape_options,
     tolerance_option,
 )
+from splinesdf.depth import deepest
 from splinesdf.io.enclosed import check_sides
 from splinesdf.io.output import check_format
 from splinesdf.io.writers.options import DIRECTIONS, UNITS
 from splinesdf.io.written import measure_file
-from splinesdf.offset import deviation
+from splinesdf.offset import deviation, least_tolerance
 from splinesdf.report import working
 
 # How much of the tolerance the offset gets; the file has the rest. DXF without --arcs is exact. In
@@ -93,7 +94,13 @@ def offset(
     asked = distances if step is None else (step,)
     tolerance = offset_tolerance_of(source, asked, tolerance, coarse=coarse)
     share = _share(suffix, arcs)
-    contours = _contours(source, distances, step, share * tolerance)
+    farthest = max(map(abs, distances), default=0.0)
+    if tolerance < (least := least_tolerance(source, farthest) / share):
+        raise ss.InputError(
+            f"expected a tolerance of at least {least:.2g} for {suffix}, above the rounding of the "
+            f"coordinates, got {tolerance:.4g}: raise it, or move the shape nearer to the origin"
+        )
+    contours = _contours(source, distances, step, tolerance, share)
     rest = (1.0 - share) * tolerance
     ss.write(output, contours, tolerance=rest if rest > 0.0 else None, **options)
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
@@ -116,16 +123,25 @@ def _share(suffix: str, arcs: bool) -> float:
 
 
 def _contours(
-    source: ss.Shape, distances: tuple[float, ...], step: float | None, tolerance: float
+    source: ss.Shape,
+    distances: tuple[float, ...],
+    step: float | None,
+    tolerance: float,
+    share: float,
 ) -> list[ss.Contour]:
     """The offsets asked for, or an error if there is none."""
-    if step is None:
-        contours = offsets_of(source, distances, tolerance)
-        listed = ", ".join(f"{d:g}" for d in distances)
-    else:
-        with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
-            contours = ss.offset(source, step=step, tolerance=tolerance, coarse=True)
-        listed = f"{step:g}"
+    try:
+        if step is None:
+            contours = offsets_of(source, distances, share * tolerance)
+        else:
+            with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
+                contours = ss.offset(source, step=step, tolerance=share * tolerance, coarse=True)
+    except ss.SplineSDFError as error:
+        if share < 1.0 and "tolerance" in str(error):
+            # What it names is not what was given.
+            told = f"{error} (of the tolerance {tolerance:.4g}, {share:g} is for the offset itself)"
+            error.args = (told, *error.args[1:])
+        raise
     fitted = sorted({contour.distance for contour in contours if contour.fitted})
     if fitted:
         click.echo(
@@ -134,8 +150,19 @@ def _contours(
             err=True,
         )
     if not contours:
-        _nothing(source, distances if step is None else (step,), tolerance)
-        raise ss.InputError(f"nothing to write: no point of the plane is at {listed}")
+        wanted = distances if step is None else (step,)
+        listed = ", ".join(f"{d:g}" for d in wanted)
+        low, high = deepest(source, -max(wanted))
+        if -max(wanted) > high:
+            raise ss.InputError(
+                f"nothing to write: no point of the plane is at {listed}, the deepest is at "
+                f"{-low:.4g}: ask for a distance nearer to the boundary"
+            )
+        _nothing(source, wanted, tolerance)
+        raise ss.InputError(
+            f"nothing to write: at {listed} is nothing wider than the tolerance {tolerance:.4g}: "
+            "lower it"
+        )
     return contours
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 import splinesdf as ss
+from splinesdf._arrays import positive
 from splinesdf._atomic import check_target
 from splinesdf.offset import offset_tolerance
 from splinesdf.report import working
@@ -62,14 +63,18 @@ def check_outputs(source: str, *outputs: str | None) -> None:
         if output is None:
             continue
         check_target(output)
-        if Path(output).exists() and Path(source).exists() and Path(output).samefile(source):
+        try:
+            lost = Path(output).samefile(source)
+        except (OSError, ValueError):  # one of them does not exist
+            lost = False
+        if lost:
             raise ss.InputError(f"{output!r} is the input, it would be lost: name another file")
 
 
 def tolerance_of(shape: ss.Shape, tolerance: float | None) -> float:
     """The tolerance, or the default, which is then told."""
     if tolerance is not None:
-        return tolerance
+        return positive(tolerance, "tolerance")
     tolerance = _SHARE * shape.size
     click.echo(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given", err=True)
     return tolerance

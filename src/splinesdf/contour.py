@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from splinesdf._arrays import Floats, positive
+from splinesdf._arrays import Floats, as_floats, finite, positive
 from splinesdf.errors import InputError
 
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
@@ -54,11 +55,14 @@ class Contour:
     closed: bool = True
     distance: float = 0.0
     y_down: bool = False
-    parent: Contour | None = None
+    parent: Contour | None = field(default=None, repr=False)
     tolerance: float | None = None
     fitted: bool = False
 
     def __post_init__(self) -> None:
+        for name in ("arcs", "weights"):
+            object.__setattr__(self, name, as_floats(getattr(self, name), name))
+        object.__setattr__(self, "distance", finite(self.distance, "distance"))
         if self.arcs.ndim != 3 or self.arcs.shape[1:] != (3, 2) or len(self.arcs) == 0:
             raise InputError(f"expected arcs of shape (n, 3, 2), n > 0, got {self.arcs.shape}")
         if self.weights.shape != self.arcs.shape[:1]:
@@ -74,6 +78,30 @@ class Contour:
             raise InputError("expected each arc to start exactly where the last one ended")
         if self.closed and not (self.arcs[-1, 2] == self.arcs[0, 0]).all():
             raise InputError("expected a closed contour to end exactly where it starts")
+
+    def __getstate__(self) -> tuple[dict[str, Any], tuple[Contour, ...]]:
+        """What pickle and copy take: the parent last of a few ancestors, the outermost first.
+
+        They recurse into what they have not met yet. Of n contours in one another, the parent
+        alone would take them n deep; with the ancestors at 1/2, 3/4, 7/8 ... of the depth before
+        it, whose own ancestors are then known, they go log n deep.
+        """
+        line: list[Contour] = []
+        above = self.parent
+        while above is not None:
+            line.append(above)
+            above = above.parent
+        line.reverse()
+        chosen, first = [], 0
+        while first < len(line):
+            at = (first + len(line)) // 2
+            chosen.append(line[at])
+            first = at + 1
+        return {**self.__dict__, "parent": None}, tuple(chosen)
+
+    def __setstate__(self, state: tuple[dict[str, Any], tuple[Contour, ...]]) -> None:
+        fields, ancestors = state
+        self.__dict__.update(fields, parent=ancestors[-1] if ancestors else None)
 
     def points(self, tolerance: float) -> Floats:
         """The contour as a polyline that is nowhere farther from it than the tolerance.

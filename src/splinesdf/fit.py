@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from operator import index as as_whole
 from typing import Literal
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, positive
+from splinesdf._arrays import Bools, Floats, as_floats, finite, positive, shown, whole
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError, ToleranceNotReached
 from splinesdf.measure import Wanted, cell_errors, largest_error
@@ -216,6 +215,10 @@ def fit_steps(
     box = shape.default_domain(outward) if domain is None else check_domain(domain)
     largest = max(abs(value) for value in (*shape.box, *box))
     tolerance = positive(tolerance, "tolerance")
+    max_cells = whole(max_cells, "max_cells", least=1, most=2**63 - 1)
+    min_side = finite(min_side, "min_side")
+    if min_side < 0.0:
+        raise InputError(f"expected min_side from 0 on, got {min_side:g}")
     if tolerance <= _ROUNDING * largest:
         raise InputError(
             f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "
@@ -269,15 +272,12 @@ def _check_bands(bands: Band | Sequence[Band] | None) -> Floats:
     """One band or several as an array (k, 2)."""
     if bands is None:
         return np.empty((0, 2))
-    try:
-        array = np.array(bands, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a band (lo, hi) or several, got {bands!r}") from error
+    array = as_floats(bands, "a band (lo, hi) or several")
     array = array.reshape(1, 2) if array.shape == (2,) else array
     if array.ndim != 2 or array.shape[1] != 2 or len(array) == 0:
-        raise InputError(f"expected a band (lo, hi) or several, got {bands!r}")
+        raise InputError(f"expected a band (lo, hi) or several, got {shown(bands)}")
     if not (np.isfinite(array).all() and np.all(array[:, 0] <= array[:, 1])):
-        raise InputError(f"expected a band with finite lo <= hi, got {bands!r}")
+        raise InputError(f"expected a band with finite lo <= hi, got {shown(bands)}")
     return array
 
 
@@ -298,10 +298,11 @@ def _first_trial(
 
 def _check_start(start: tuple[int, int]) -> tuple[int, int]:
     try:
-        m, n = (as_whole(count) for count in start)
+        m, n = start
     except (TypeError, ValueError) as error:
-        raise InputError(f"expected start as two whole numbers, got {start!r}") from error
-    if not (m > 0 and n > 0 and m * n <= _MAX_CELLS):
+        raise InputError(f"expected start as two whole numbers, got {shown(start)}") from error
+    m, n = (whole(count, "start", least=1, most=_MAX_CELLS) for count in (m, n))
+    if m * n > _MAX_CELLS:
         raise InputError(f"expected a start of 1 to {_MAX_CELLS:,} cells, got {m} x {n}")
     return m, n
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import positive
+from splinesdf._arrays import as_floats, finite, positive, shown
 from splinesdf.contour import Contour, evaluate
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
@@ -97,12 +97,9 @@ def offset(
         return _until_nothing_is_left(shape, step, tolerance, coarse)
     if distances is None:
         raise InputError("expected distances or a step, got neither")
-    try:
-        wanted = np.atleast_1d(np.asarray(distances, dtype=np.float64))
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected distances as numbers, got {distances!r}") from error
+    wanted = np.atleast_1d(as_floats(distances, "distances"))
     if wanted.ndim != 1 or not len(wanted) or not np.isfinite(wanted).all():
-        raise InputError(f"expected one or more finite distances, got {distances!r}")
+        raise InputError(f"expected one or more finite distances, got {shown(distances)}")
     asked = offset_tolerance(shape, wanted.tolist(), tolerance, coarse=coarse)
     _check_rounding(shape, float(np.abs(wanted).max()), asked)
     return [contour for d in wanted.tolist() for contour in _at(shape, d, asked)]
@@ -129,8 +126,13 @@ def offset_tolerance(
     return tolerance
 
 
+def least_tolerance(shape: Shape, farthest: float) -> float:
+    """The least tolerance of offsets up to a distance: what rounding leaves room for."""
+    return _LEAST_TOLERANCE * max(*map(abs, shape.box), farthest)
+
+
 def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
-    least = _LEAST_TOLERANCE * max(*map(abs, shape.box), farthest)
+    least = least_tolerance(shape, farthest)
     if tolerance < least:
         raise InputError(
             f"expected a tolerance of at least {least:.2g}, above the rounding of the coordinates, "
@@ -141,14 +143,18 @@ def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
 def _until_nothing_is_left(
     shape: Shape, step: float, tolerance: float | None, coarse: bool
 ) -> list[Contour]:
-    if not (isinstance(step, int | float | np.number) and math.isfinite(step) and step < 0.0):
+    try:
+        size = finite(step, "step")
+    except InputError:
+        size = 0.0
+    if size >= 0.0:
         raise InputError(
-            f"expected a negative step, inward, until nothing is left, got {step!r}: "
+            f"expected a negative step, inward, until nothing is left, got {shown(step)}: "
             "outward there is no end, so give the distances"
         )
-    asked = offset_tolerance(shape, [step], tolerance, coarse=coarse)
+    asked = offset_tolerance(shape, [size], tolerance, coarse=coarse)
     _check_rounding(shape, 0.0, asked)
-    steps = _deepest(shape) / -step
+    steps = _deepest(shape) / -size
     if steps > _MOST_STEPS:
         raise InputError(
             f"expected a step that is taken {_MOST_STEPS:,} times at most, got {step:g}, which may "
@@ -156,7 +162,7 @@ def _until_nothing_is_left(
         )
     result: list[Contour] = []
     number = 1
-    while found := _at(shape, number * float(step), asked):
+    while found := _at(shape, number * size, asked):
         result += found
         number += 1
     return result

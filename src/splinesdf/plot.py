@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Floats
+from splinesdf._arrays import Floats, as_floats, shown
 from splinesdf._atomic import atomic_file
 from splinesdf._paths import as_path
 from splinesdf.contour import Contour
@@ -374,11 +374,8 @@ def _upright(ax: Axes, y_down: bool) -> None:
 
 
 def _check_levels(levels: ArrayLike) -> Floats:
-    try:
-        chosen = np.asarray(levels, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected levels as numbers, got {levels!r}") from error
+    chosen = as_floats(levels, "levels")
     increasing = chosen.ndim == 1 and len(chosen) > 1 and bool(np.all(np.diff(chosen) > 0.0))
     if not (increasing and np.isfinite(chosen).all()):
-        raise InputError(f"expected two or more increasing levels, got {levels!r}")
+        raise InputError(f"expected two or more increasing levels, got {shown(levels)}")
     return chosen

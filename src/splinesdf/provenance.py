@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
-from numbers import Integral, Real
+from numbers import Integral
 
+from splinesdf._arrays import finite, shown
 from splinesdf.errors import InputError
 
 SPACES = ("hierarchical", "tensor", "uniform")
@@ -80,33 +80,21 @@ class Provenance:
             object.__setattr__(self, name, value)
 
 
-def _number(value: object, name: str, *, positive: bool = False) -> float:
-    number = _finite(value, name)
+def _number(value: float, name: str, *, positive: bool = False) -> float:
+    number = finite(value, name)
     if number < 0.0 or (positive and number == 0.0):
         raise InputError(f"expected {name} {'above' if positive else 'from'} 0, got {number:g}")
     return number
 
 
-def _finite(value: object, name: str) -> float:
-    # A bool is a number to Python, and a text of digits one to float().
-    if isinstance(value, Real) and not isinstance(value, bool):
-        try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
-        if math.isfinite(number):
-            return number
-    raise InputError(f"expected a finite number for {name}, got {_shown(value)}")
-
-
 def _bands(value: object) -> tuple[tuple[float, float], ...]:
     bands = []
     if not isinstance(value, (tuple, list)):
-        raise InputError(f"expected bands as pairs (lo, hi), got {_shown(value)}")
+        raise InputError(f"expected bands as pairs (lo, hi), got {shown(value)}")
     for pair in value:
         if not isinstance(pair, (tuple, list)) or len(pair) != 2:
-            raise InputError(f"expected bands as pairs (lo, hi), got {_shown(pair)}")
-        low, high = (_finite(end, "a band") for end in pair)
+            raise InputError(f"expected bands as pairs (lo, hi), got {shown(pair)}")
+        low, high = (finite(end, "a band") for end in pair)
         if low > high:
             raise InputError(f"expected a band with lo <= hi, got ({low:g}, {high:g})")
         bands.append((low, high))
@@ -115,26 +103,18 @@ def _bands(value: object) -> tuple[tuple[float, float], ...]:
 
 def _one_of(value: object, name: str, known: tuple[str, ...]) -> str:
     if not (isinstance(value, str) and value in known):
-        raise InputError(f"expected {name} to be one of {', '.join(known)}, got {_shown(value)}")
+        raise InputError(f"expected {name} to be one of {', '.join(known)}, got {shown(value)}")
     return value
 
 
 def _text(value: object, name: str) -> str:
     if not isinstance(value, str):
-        raise InputError(f"expected a text for {name}, got {_shown(value)}")
+        raise InputError(f"expected a text for {name}, got {shown(value)}")
     return value
 
 
 def _count(value: object) -> int:
     whole = isinstance(value, Integral) and not isinstance(value, bool)
     if not (whole and 0 <= value < 2**63):  # type: ignore[operator]
-        raise InputError(f"expected a count of evaluations, got {_shown(value)}")
+        raise InputError(f"expected a count of evaluations, got {shown(value)}")
     return int(value)  # type: ignore[call-overload, no-any-return]
-
-
-def _shown(value: object) -> str:
-    """A value for a message: one line, not all of a long one."""
-    try:
-        return ascii(value)[:60]
-    except ValueError:  # an integer of thousands of digits
-        return type(value).__name__

@@ -149,7 +149,10 @@ def _rows(degree: Ints, start: Floats, end: Floats, power: Floats, bernstein: Fl
         table = bernstein[chosen, :, : 2 * d + 1].reshape(-1, 3 * (2 * d + 1))
         rows[chosen, 5 + 2 * d : 5 + 2 * d + table.shape[1]] = table
     line = degree == 1
-    rows[line, 7] = 1.0 / np.sum(power[line, 1] ** 2, axis=1)
+    squared = np.sum(power[line, 1] ** 2, axis=1)
+    # So short that the inverse would overflow: its first point is as good as any other.
+    point = squared < np.finfo(np.float64).tiny
+    rows[line, 7] = np.where(point, 0.0, 1.0 / np.where(point, 1.0, squared))
     return rows
 
 
@@ -311,7 +314,11 @@ def _most_bent(arcs: Floats) -> Floats:
     """The largest curvature times the length of the chord."""
     low, high, _ = curvature_ranges(arcs)
     chord = arcs[:, -1] - arcs[:, 0]
-    return np.asarray(np.maximum(high, -low) * np.hypot(chord[:, 0], chord[:, 1]))
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    # One that comes back to its start is bent, however long: infinite times zero is no number.
+    return np.where(length > 0.0, np.maximum(high, -low), np.inf) * np.where(
+        length > 0.0, length, 1.0
+    )
 
 
 def _tables(arcs: Arcs, most: int) -> tuple[Floats, Floats, Floats, Floats]:

@@ -52,7 +52,8 @@ def filled_boundary(outline: Arclets, evenodd: bool, largest: float) -> Arclets:
         rule, other = ("evenodd", "nonzero") if evenodd else ("nonzero", "evenodd")
         raise InputError(
             f"the contours fill nothing under the rule {rule!r}: they are traced to and fro, or "
-            f"twice; draw each once, or try fill={other!r}"
+            f"twice, or nowhere wider than the rounding of their coordinates, {touching:.2g}; draw "
+            f"each once, or try fill={other!r}"
         )
     if keep.all() and left.all() and parts.closed.all():
         return outline

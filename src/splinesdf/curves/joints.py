@@ -53,6 +53,7 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     place[order] = np.column_stack([np.arange(len(order)) - first, first, np.repeat(sizes, sizes)])
     arcs, vectors = _standing(boundary)
     lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in vectors]
+    _lead_on(boundary.following, vectors, lengths)
     leaving, arriving = (
         vector / length[:, None] for vector, length in zip(vectors, lengths, strict=True)
     )
@@ -83,6 +84,21 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     return Joints(
         order, loops, place, boundary.following, turn, tangents, turning, arcs, vertices.touch
     )
+
+
+def _lead_on(following: Ints, vectors: list[Floats], lengths: list[Floats]) -> None:
+    """Give what rounding has left without extent the direction of what follows it.
+
+    So all of a corner in such a place is where it is reached, and none is lost.
+    """
+    for _ in range(len(following)):  # a row of them takes as many rounds as it is long
+        points = np.flatnonzero((lengths[0] == 0.0) | (lengths[1] == 0.0))
+        if len(points) in (0, len(following)):
+            break
+        after = following[points]
+        vector, length = vectors[0][after], lengths[0][after]
+        for k in (0, 1):
+            vectors[k][points], lengths[k][points] = vector, length
 
 
 def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import LARGEST, Floats, as_points, largest_coordinate
+from splinesdf._arrays import LARGEST, NOTHING, Floats, as_points, largest_coordinate
 from splinesdf.errors import InputError, OpenContourError
 
 # Neighbouring pieces meet to rounding; a gap up to this share of the shape's largest
@@ -30,7 +30,8 @@ def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[l
     Parameters
     ----------
     loops : iterable of sequences of array_like, shape (degree + 1, 2)
-        The control points of each piece of each loop. Pieces of length zero are dropped.
+        The control points of each piece of each loop. Pieces of length zero are dropped, and what
+        is as good as that beside the shape's size.
     close : bool
         Close an open loop by a straight piece instead of refusing it.
 
@@ -106,7 +107,7 @@ def _closed_loop(
 ) -> list[Floats]:
     """The loop's pieces, none of length zero, each starting exactly where the last one ended."""
     pieces = [_straightened(piece, largest) for piece in loop]
-    pieces = [piece for piece in pieces if np.any(piece != piece[0])]
+    pieces = [piece for piece in pieces if np.any(np.ptp(piece, axis=0) > NOTHING * size)]
     result: list[Floats] = []
     for index, piece in enumerate(pieces):
         result.append(piece)

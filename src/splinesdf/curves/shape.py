@@ -10,7 +10,7 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Floats, Ints, as_points
+from splinesdf._arrays import Floats, Ints, as_points, finite, whole
 from splinesdf._tables import Arclets, Bends, Joints, Kinds
 from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.bends import bends
@@ -29,6 +29,9 @@ Fill = Literal["nonzero", "evenodd"]
 
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
+# Samples a piece in `Shape.sample`. More: no picture shows them, and a slip of the pen takes all
+# memory; fewer: a circle of one piece could look like a polygon.
+_MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +65,9 @@ class Shape:
     y_down: bool = False
     name: str = ""
     notes: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "control", as_points(self.control))
 
     @classmethod
     def from_pieces(
@@ -272,7 +278,7 @@ class Shape:
     def default_domain(self, beyond: float = 0.0) -> tuple[float, float, float, float]:
         """The box grown by a tenth of the size, and by ``beyond``, on all sides."""
         xmin, ymin, xmax, ymax = self.box
-        margin = _MARGIN * self.size + beyond
+        margin = _MARGIN * self.size + finite(beyond, "beyond")
         return xmin - margin, ymin - margin, xmax + margin, ymax + margin
 
     @cached_property
@@ -320,6 +326,7 @@ class Shape:
 
     def piece(self, index: int) -> Floats:
         """Control points of one piece, shape (degree + 1, 2)."""
+        index = whole(index, "index", least=0, most=self.piece_count - 1)
         return self.control[self.starts[index] : self.starts[index + 1]]
 
     def sample(self, count: int) -> list[Floats]:
@@ -330,6 +337,7 @@ class Shape:
         list of ndarray, shape (n, 2)
             For pictures and rough work: the last point repeats the first.
         """
+        count = whole(count, "count", least=1, most=_MOST_SAMPLES)
         parameters = np.linspace(0.0, 1.0, count, endpoint=False)
         result = []
         for first, last in zip(self.loops[:-1], self.loops[1:], strict=True):

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
+from splinesdf._arrays import Floats, Ints, finite
 from splinesdf.contour import Contour
-from splinesdf.errors import InputError
 from splinesdf.level_sets.arcs import conic_arcs, shoulders
 from splinesdf.level_sets.crossings import Crossings, find_crossings
 from splinesdf.level_sets.quadratics import (
@@ -39,12 +38,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
         Closed, but for those that leave the domain. Exact up to rounding: every arc is the
         conic on which the triangle's quadratic takes the level.
     """
-    try:
-        level = float(level)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a level as a number, got {level!r}") from error
-    if not np.isfinite(level):
-        raise InputError(f"expected a finite level, got {level!r}")
+    level = finite(level, "level")
     crossings = find_crossings(mesh, ordinates, level)
     boxes = mesh.boxes[crossings.cells]
     quadratics = triangle_quadratics(boxes, ordinates[crossings.cells], level)
