@@ -2,7 +2,7 @@
 
 start ─→ quasi-interpolate ─→ bracket the error of cells that changed ─→ all good? ─ yes ─→ reached
              ↑                                                             │ no
-             └──── halve the cells around the bad quarters of bad cells ←──┘
+             └──── halve the cells around the bad quarters of bad cells ←──┴─ too many? ─→ max_cells
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ def fit(
     start : pair of int, optional
         Cells each way to start from; four along the longer side unless given.
     max_cells : int
-        Stop when there are more cells.
+        No result has more cells: stop when the next round would make more.
     min_side : float
         Stop when a cell that is not good enough has a side below twice this.
     certify : bool
@@ -221,7 +221,7 @@ def fit_steps(
             f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "
             f"got {tolerance:.4g}"
         )
-    trial = _first_trial(shape, space, box, start, operator)
+    trial = _first_trial(shape, space, box, _first_cells(box, start, max_cells), operator)
     wanted = Wanted(threshold=tolerance, enough=tolerance, proved=certify)
     history: tuple[FitStep, ...] = ()
     while True:
@@ -231,7 +231,9 @@ def fit_steps(
         known = trial.known
         bad = known.counts & known.over.any(axis=1)
         count = len(bad)
-        stopped = _verdict(spline.mesh, bad, count, max_cells, min_side)
+        stopped = _verdict(spline.mesh, bad, min_side)
+        if stopped == "refining" and trial.plan(np.flatnonzero(bad)) > max_cells:
+            stopped = "max_cells"
         error, bound = float(known.low[known.counts].max(initial=0.0)), None
         if stopped != "refining":
             error, bound = largest_error(shape, spline, trial.center, bands, known)
@@ -262,7 +264,7 @@ def fit_steps(
         )
         if stopped != "refining":
             return
-        trial.refine(np.flatnonzero(bad))
+        trial.refine()
 
 
 def _check_bands(bands: Band | Sequence[Band] | None) -> Floats:
@@ -282,18 +284,31 @@ def _check_bands(bands: Band | Sequence[Band] | None) -> Floats:
 
 
 def _first_trial(
-    shape: Shape, space: str, box: Box, start: tuple[int, int] | None, operator: str
+    shape: Shape, space: str, box: Box, start: tuple[int, int], operator: str
 ) -> Trial:
-    width, height = box[2] - box[0], box[3] - box[1]
-    side = max(width, height) / _START
-    m, n = max(1, round(width / side)), max(1, round(height / side))
-    if start is not None:
-        m, n = _check_start(start)
     if space == "hierarchical":
-        return TreeTrial(shape, box, (m, n), operator)
+        return TreeTrial(shape, box, start, operator)
     if space in ("tensor", "uniform"):
-        return GridTrial(shape, Grid.uniform(box, m, n), operator, space == "uniform")
+        return GridTrial(shape, Grid.uniform(box, *start), operator, space == "uniform")
     raise InputError(f"expected space 'hierarchical', 'tensor' or 'uniform', got {space!r}")
+
+
+def _first_cells(box: Box, start: tuple[int, int] | None, max_cells: int) -> tuple[int, int]:
+    """Cells each way to start from, never more than ``max_cells``."""
+    if start is None:
+        width, height = box[2] - box[0], box[3] - box[1]
+        for count in range(_START, 0, -1):
+            side = max(width, height) / count
+            m, n = max(1, round(width / side)), max(1, round(height / side))
+            if m * n <= max_cells:
+                break
+    else:
+        m, n = _check_start(start)
+    if m * n > max_cells:
+        raise InputError(
+            f"expected max_cells of at least the cells to start from, got {max_cells} for {m} x {n}"
+        )
+    return m, n
 
 
 def _check_start(start: tuple[int, int]) -> tuple[int, int]:
@@ -306,11 +321,9 @@ def _check_start(start: tuple[int, int]) -> tuple[int, int]:
     return m, n
 
 
-def _verdict(mesh: Mesh, bad: Bools, cells: int, max_cells: int, min_side: float) -> Stopped:
+def _verdict(mesh: Mesh, bad: Bools, min_side: float) -> Stopped:
     if not bad.any():
         return "reached"
-    if cells > max_cells:
-        return "max_cells"
     boxes = mesh.boxes[bad]
     smallest = float(np.min(boxes[:, 2:] - boxes[:, :2]))
     too_deep = isinstance(mesh, Quadtree) and (
