@@ -1,4 +1,4 @@
-"""`max_cells` is a maximum: no result of a fit, whatever becomes of it, has more cells than that."""
+"""`max_cells` is a maximum: no result of a fit, reached or not, has more cells than that."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ from splinesdf.spaces.cells import center_ordinates
 from splinesdf.spline import SplineSDF
 from splinesdf.trial import GridTrial, TreeTrial, Trial
 
-Stopped = Literal["refining", "reached", "max_cells", "min_side"]
+Stopped = Literal["refining", "reached", "max_cells", "min_side", "given"]
 Band = tuple[float, float]
 
 # Cells along the domain's longer side at the start. More: cells wasted where the distance is
@@ -74,8 +74,8 @@ class FitResult:
     ----------
     spline : SplineSDF
         With the shape in ``.shape`` and these figures in ``.made``.
-    tolerance : float
-        What was asked.
+    tolerance : float or None
+        What was asked; None of `interpolate`, which is asked for none.
     error : float
         The largest |s - u| over what counts, from below: over the whole domain, or where a
         band is. With a certificate the true maximum is between it and ``bound``.
@@ -86,8 +86,9 @@ class FitResult:
         A proved upper bound of the error (docs/theory/certificate.md), not more than half a
         percent above it, but where that cannot be had; None with ``certify=False``.
     cells : int
-    stopped : {"reached", "max_cells", "min_side", "refining"}
-        Why the loop ended; "refining" in the steps before the last.
+    stopped : {"reached", "max_cells", "min_side", "refining", "given"}
+        Why the loop ended; "refining" in the steps before the last. "given": there was no loop,
+        as `interpolate` takes the mesh that it is given.
     history : tuple of FitStep
     evaluations : int
         Exact distances asked for the spline; the proof finds closest points of its own.
@@ -96,7 +97,7 @@ class FitResult:
     """
 
     spline: SplineSDF
-    tolerance: float
+    tolerance: float | None
     error: float
     centre_error: float
     bound: float | None
@@ -179,7 +180,7 @@ def fit(
 
 def require_reached(result: FitResult) -> FitResult:
     """The last result of `fit_steps`, or `ToleranceNotReached` if it missed its tolerance."""
-    if result.stopped == "reached":
+    if result.stopped in ("reached", "given"):
         return result
     advice = {
         "max_cells": "raise max_cells or tolerance, or ask for a band",

@@ -73,6 +73,9 @@ class Trial(Protocol):
 class GridTrial:
     """On a tensor grid; whatever is refined, all cells change."""
 
+    _mesh: Grid
+    _planned: Grid  # the next one
+
     def __init__(self, shape: Shape, mesh: Grid, operator: str, whole: bool) -> None:
         self._shape, self._operator, self._whole = shape, operator, whole
         self.evaluations = 0
