@@ -46,7 +46,7 @@ _POINTS = 1000
 _CURVE, _LEVEL = plot.INSIDE, plot.OUTSIDE
 _DASHES = (0.0, (5.0, 2.0))
 # Letters on a line of a caption, which is as wide as the figure.
-_LINE = 124
+_LINE = 118
 
 
 def figures(folder: str | os.PathLike[str]) -> list[Path]:
