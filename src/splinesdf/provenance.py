@@ -23,12 +23,12 @@ def _this_version() -> str:
 
 @dataclass(frozen=True)
 class Provenance:
-    """What was asked of `fit`, what it found, and which splinesdf it was.
+    """What was asked of `fit` or `interpolate`, what it found, and which splinesdf it was.
 
     Attributes
     ----------
-    tolerance : float
-        Largest |s - u| that was asked, in the shape's unit.
+    tolerance : float or None
+        Largest |s - u| that was asked, in the shape's unit; None if the mesh was given instead.
     error : float
         Largest |s - u| that was found by a search over what counts: the whole domain, or what
         may meet the bands. In the shape's unit.
@@ -53,7 +53,7 @@ class Provenance:
         If a number is not finite or a name not known: no fit says so of itself.
     """
 
-    tolerance: float
+    tolerance: float | None
     error: float
     bound: float | None
     bands: tuple[tuple[float, float], ...]
@@ -66,7 +66,9 @@ class Provenance:
     def __post_init__(self) -> None:
         # As plain Python values, so that they are written and compared as what they are.
         keep = {
-            "tolerance": _number(self.tolerance, "tolerance", positive=True),
+            "tolerance": None
+            if self.tolerance is None
+            else _number(self.tolerance, "tolerance", positive=True),
             "error": _number(self.error, "error"),
             "bound": None if self.bound is None else _number(self.bound, "bound"),
             "bands": _bands(self.bands),

@@ -87,7 +87,7 @@ def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
         shape=describe(shape),
         method=method,
         domain=box_text(result.spline.domain),
-        tolerance=f"{result.tolerance:.4g}",
+        tolerance=_asked(result.tolerance),
         error=f"{result.error:.4g} (largest |s - u| {where})",
         bound="not asked for" if result.bound is None else f"{result.bound:.4g} (proved)",
         centre_error=f"{result.centre_error:.4g} (at cell centers only, as in the paper)",
@@ -105,13 +105,17 @@ def provenance(made: Provenance | None) -> dict[str, str]:
     return {
         "method": f"{made.space}, {made.operator}",
         "kept": f"at distances of {bands}" if bands else "over the whole domain",
-        "tolerance": f"{made.tolerance:.4g}",
+        "tolerance": _asked(made.tolerance),
         "error": f"{made.error:.4g} (largest |s - u| found)",
         "bound": "none was asked for" if made.bound is None else f"{made.bound:.4g} (proved)",
         "stopped": made.stopped,
         "evaluations": f"{made.evaluations:,} exact distances",
         "made_by": f"splinesdf {made.version}",
     }
+
+
+def _asked(tolerance: float | None) -> str:
+    return "none was asked for" if tolerance is None else f"{tolerance:.4g}"
 
 
 def fit_figures(result: FitResult, shape: Shape, *, seconds: float) -> dict[str, Any]:
