@@ -89,9 +89,8 @@ def measure_file(path: str | os.PathLike[str], shape: Shape, distances: Sequence
     InputError
         If the file cannot be read or holds no curve.
     """
-    file = as_path(path)
-    suffix = file.suffix.lower()
-    curves = list(_READERS[suffix](file))
+    curves = curves_in(path)
+    suffix = as_path(path).suffix.lower()
     if not curves:
         raise InputError(f"{os.fspath(path)}: expected at least one curve, found none")
     # y points up in DXF and G-code and down in SVG; the others hold it as the shape has it.
@@ -108,6 +107,12 @@ def measure_file(path: str | os.PathLike[str], shape: Shape, distances: Sequence
         if not found <= worst.deviation:
             worst = Worst(found, point, level, worst.curves)
     return worst
+
+
+def curves_in(path: str | os.PathLike[str]) -> list[Curve]:
+    """The curves of a file that `write` made, in the file's own coordinates."""
+    file = as_path(path)
+    return list(_READERS[file.suffix.lower()](file))
 
 
 def _worst_of(
