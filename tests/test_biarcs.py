@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
@@ -12,6 +12,7 @@ import splinesdf as ss
 from splinesdf.conics import Kind, classify, elements, rounding
 from splinesdf.contour import Contour, halve
 from tests.chains import circle, ellipse, from_arc, line, mixed_chain, open_chain, slot, turned
+from tests.examples import examples
 from tests.nearness import apart, dense
 from tests.shapes import gamma
 
@@ -128,7 +129,7 @@ def test_offsets_take_few_arcs() -> None:
     assert max(jumps(result).max() for result in results) <= 1e-5
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(
     weight=st.sampled_from([1e-3, 0.1, 0.9, 1.0, 3.0, 1e3]),
     x=st.floats(-3.0, 4.0),

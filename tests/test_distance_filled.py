@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import splinesdf as ss
 from tests import oracles
+from tests.examples import examples
 
 # Crossings are rounded once, and so are the ends of the oracle's parts; then a distance has about
 # four roundings: a share of the largest coordinate.
@@ -167,7 +168,7 @@ rings = st.lists(grid, min_size=3, max_size=6).filter(lambda ring: len(set(ring)
 
 
 @given(st.lists(rings, min_size=1, max_size=2), rules)
-@settings(max_examples=60)
+@examples(60)
 def test_polygons_on_a_coarse_grid(corners: list[list[tuple[int, int]]], fill: str) -> None:
     check_polygons([np.array(ring, dtype=float) for ring in corners], fill, seed=4)
 
@@ -176,11 +177,10 @@ reals = st.floats(-1.0, 1.0, allow_subnormal=False).map(lambda x: round(x, 6))
 
 
 @given(st.lists(st.tuples(reals, reals), min_size=3, max_size=8), rules)
-@settings(max_examples=40)
+@examples(40)
 def test_polygons_that_cross_themselves(corners: list[tuple[float, float]], fill: str) -> None:
     ring = np.array(corners)
-    if np.ptp(ring, axis=0).max() < 0.01:
-        return
+    assume(np.ptp(ring, axis=0).max() >= 0.01)
     check_polygons([ring], fill, seed=5)
 
 
@@ -188,7 +188,7 @@ boxes = st.tuples(*[st.integers(0, 6)] * 2, *[st.integers(1, 5)] * 2, st.boolean
 
 
 @given(st.lists(boxes, min_size=2, max_size=4), rules)
-@settings(max_examples=40)
+@examples(40)
 def test_rectangles_that_overlap(drawn: list[tuple[int, int, int, int, bool]], fill: str) -> None:
     corners = [rectangle(*box[:4])[:: -1 if box[4] else 1].astype(float) for box in drawn]
     check_polygons(corners, fill, seed=6)
@@ -271,7 +271,7 @@ def test_nasty_curves(name: str, fill: str) -> None:
 
 
 @given(st.integers(0, 10**9), st.integers(1, 4), st.integers(1, 2), rules)
-@settings(max_examples=60)
+@examples(60)
 def test_random_chains_of_cubics(seed: int, count: int, loops: int, fill: str) -> None:
     rng = np.random.default_rng(seed)
     drawn = []
@@ -286,7 +286,7 @@ def test_random_chains_of_cubics(seed: int, count: int, loops: int, fill: str) -
     st.lists(st.tuples(reals, reals, st.floats(0.2, 1.0), st.booleans()), min_size=2, max_size=4),
     rules,
 )
-@settings(max_examples=40)
+@examples(40)
 def test_circles_that_overlap(drawn: list[tuple[float, float, float, bool]], fill: str) -> None:
     loops = []
     for x, y, radius, backwards in drawn:

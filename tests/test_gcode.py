@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import splinesdf as ss
 from splinesdf.contour import Contour, mirrored
 from tests.chains import circle, circular, ellipse, mixed_chain, open_chain, slot, turned
+from tests.examples import examples
 from tests.nearness import apart, apart_from_line, dense
 
 NUMBER = re.compile(r"[A-Z]-?\d+(\.\d+)?")
@@ -213,7 +214,7 @@ def test_the_nearest_contour_is_next(tmp_path: Path) -> None:
     assert starts == [31 + 0j, 21 + 0j, 11 + 0j, 1 + 0j]
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(x=st.floats(-10.0, 10.0), y=st.floats(-10.0, 10.0), which=st.sampled_from("csm"))
 def test_a_contour_is_entered_at_its_nearest_point(x: float, y: float, which: str) -> None:
     chain = {

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy import ndimage
 
@@ -15,6 +15,7 @@ from splinesdf.meshes import Grid, Quadtree
 from splinesdf.quasi import quasi_interpolate
 from splinesdf.spaces import hierarchical_ordinates, tensor_ordinates
 from splinesdf.spline import SplineSDF
+from tests.examples import examples
 from tests.naive_tree import refine
 
 Coefficients = Callable[[np.random.Generator, tuple[int, ...]], np.ndarray]
@@ -97,7 +98,7 @@ def check_values_and_ends(spline: SplineSDF, contours: list[Contour], tolerance:
             assert np.minimum(np.abs(ends), np.abs(1.0 - ends)).min(axis=1).max() < 1e-15
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(
     st.integers(0, 10**6),
     st.sampled_from(sorted(SPACES)),

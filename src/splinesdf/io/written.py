@@ -112,9 +112,8 @@ def measure_file(
     InputError
         If the file cannot be read or holds no curve.
     """
-    file = as_path(path)
-    suffix = file.suffix.lower()
-    curves = list(_READERS[suffix](file))
+    curves = curves_in(path)
+    suffix = as_path(path).suffix.lower()
     if not curves:
         raise InputError(f"{os.fspath(path)}: expected at least one curve, found none")
     # y points up in DXF and G-code and down in SVG; the others hold it as the shape has it.
@@ -159,6 +158,12 @@ def _turn(file: Path, distance: float, flip: bool) -> int:
     climb = re.search(r"^\(within .* climb milling\)", file.read_text("utf-8"), re.MULTILINE)
     left = (distance < 0.0) == (climb is not None)
     return 1 if left != flip else -1
+
+
+def curves_in(path: str | os.PathLike[str]) -> list[Curve]:
+    """The curves of a file that `write` made, in the file's own coordinates."""
+    file = as_path(path)
+    return list(_READERS[file.suffix.lower()](file))
 
 
 def _worst_of(

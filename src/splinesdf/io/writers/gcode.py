@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from splinesdf.biarcs import as_arcs
-from splinesdf.conics import Element, Kind, elements
+from splinesdf.biarcs import arc_elements
+from splinesdf.conics import Element, Kind
 from splinesdf.contour import Contour, upright
 from splinesdf.io.writers.options import Milling, Options
 
@@ -29,6 +29,9 @@ _FEWEST_DECIMALS = 4
 _SHARE = 0.98
 # More digits than doubles have say nothing.
 _DIGITS = 15
+# Arcs of a smaller sweep (radians) are straight where the nearest point is looked for: within 1e-7
+# of their chords.
+_FLAT = 1e-6
 # Nearer to an element's end than so many last digits a path is entered in that end: a shorter
 # first or last move would be all rounding.
 _SNAP = 100.0
@@ -70,15 +73,14 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     units = "mm" if options.units is None else options.units
     largest = max(float(np.abs(contour.arcs).max()) for contour in contours)
     decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(options.tolerance)) + _DECIMALS_BEYOND)
-    decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(max(largest, 1.0)))))
+    decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
     paths = [_path(c, _SHARE * options.tolerance, milling.direction) for c in contours]
-    safe = f"G0 Z{_number(milling.safe_height, decimals)}"
-    plunge = f"G1 Z{_number(-milling.depth, decimals)}"
+    safe, plunge = f"G0 Z{_plain(milling.safe_height)}", f"G1 Z{_plain(-milling.depth)}"
     if milling.feed is not None:
-        plunge += f" F{_number(milling.feed, decimals)}"
+        plunge += f" F{_plain(milling.feed)}"
     lines = [
         f"(splinesdf: {len(paths)} contours, lengths in {units})",
-        f"(within {_number(options.tolerance, decimals)}, {milling.direction} milling)",
+        f"(within {options.tolerance:.6g}, {milling.direction} milling)",
         "(start the spindle before: clockwise, seen from above)",
         f"G17 {'G21' if units == 'mm' else 'G20'} G40 G90 G91.1 G94",
         safe,
@@ -92,7 +94,7 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
 
 def _path(contour: Contour, tolerance: float, direction: str) -> _Path:
     """The contour with y up, and what stays on the right (climb) or on the left."""
-    pieces = elements(as_arcs(upright(contour), tolerance=tolerance))
+    pieces = arc_elements(upright(contour), tolerance=tolerance)
     # Contours have the side nearer to the inside on their left, where x turns into y; a mirror
     # changes sides. The shape is inside, and it stays if the way is around it.
     inside_on_left = not contour.y_down
@@ -136,7 +138,10 @@ class _Near:
         self.way = np.array([p.end - p.start if closed else 0j for *_, p, closed in rows])
         self.center = np.array([p.center for *_, p, _ in rows])
         self.sweep = np.array([p.sweep for *_, p, _ in rows])
-        self.round = np.array([p.kind is Kind.CIRCLE and closed for *_, p, closed in rows])
+        # Of flatter arcs the chord is as near, and the center too far away to tell angles.
+        self.round = np.array(
+            [p.kind is Kind.CIRCLE and closed and abs(p.sweep) > _FLAT for *_, p, closed in rows]
+        )
         radius = np.array([p.radius for *_, p, _ in rows])
         self.lengths = np.where(self.round, radius * np.abs(self.sweep), np.abs(self.way))
 
@@ -202,6 +207,11 @@ def _rounded(point: complex, decimals: int) -> complex:
 
 def _xy(point: complex, decimals: int) -> str:
     return f"X{_number(point.real, decimals)} Y{_number(point.imag, decimals)}"
+
+
+def _plain(value: float) -> str:
+    """A number as it was given, without an exponent: the decimals of the curve may be too few."""
+    return np.format_float_positional(value + 0.0, trim="-")
 
 
 def _number(value: float, decimals: int) -> str:
