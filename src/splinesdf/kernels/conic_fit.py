@@ -18,7 +18,7 @@ from splinesdf.kernels.conic_arc import conic_arc, look, run_point
 # An arc is measured at so many times as many points before it is taken.
 _FINER = 4
 # Straight and round runs are cut to arcs of at most a quarter of a circle.
-_QUARTER = 0.5 * math.pi + 1e-9
+_QUARTER = 0.5 * math.pi + 1e-6
 # Parts of an element whose bending is compared to find where it changes sides, and how much of a
 # turn over the element's length counts as bending.
 _PARTS, _BENDS = 8, 1e-9

@@ -26,7 +26,7 @@ _EMPTY = 20.0
 _DENTS, _FLAT, _FEWER = 0.25, 0.125, 0.25
 # Points of one arclet at most, so that a tolerance far below its bulge does not fill the memory.
 _POINTS = 4096
-_QUARTER = 0.5 * math.pi + 1e-9
+_QUARTER = 0.5 * math.pi + 1e-6
 
 
 def is_far(shape: Shape, distance: float) -> bool:
