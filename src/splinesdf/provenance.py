@@ -83,10 +83,17 @@ class Provenance:
 
 
 def _number(value: float, name: str, *, positive: bool = False) -> float:
-    number = finite(value, name)
+    number = _finite(value, name)
     if number < 0.0 or (positive and number == 0.0):
         raise InputError(f"expected {name} {'above' if positive else 'from'} 0, got {number:g}")
     return number
+
+
+def _finite(value: float, name: str) -> float:
+    try:
+        return finite(value, name)
+    except InputError as error:
+        raise InputError(f"expected a finite number for {name}, got {shown(value)}") from error
 
 
 def _bands(value: object) -> tuple[tuple[float, float], ...]:
@@ -96,7 +103,7 @@ def _bands(value: object) -> tuple[tuple[float, float], ...]:
     for pair in value:
         if not isinstance(pair, (tuple, list)) or len(pair) != 2:
             raise InputError(f"expected bands as pairs (lo, hi), got {shown(pair)}")
-        low, high = (finite(end, "a band") for end in pair)
+        low, high = (_finite(end, "a band") for end in pair)
         if low > high:
             raise InputError(f"expected a band with lo <= hi, got ({low:g}, {high:g})")
         bands.append((low, high))

@@ -56,7 +56,11 @@ def check_domain(domain: Box) -> Box:
 
 def check_counts(m: int, n: int) -> tuple[int, int]:
     """Numbers of cells each way, or an `InputError`."""
-    m, n = (whole(count, name, least=1, most=_MOST_CELLS) for count, name in ((m, "m"), (n, "n")))
+    m, n = (
+        whole(count, name, least=-(2**63), most=_MOST_CELLS) for count, name in ((m, "m"), (n, "n"))
+    )
+    if m < 1 or n < 1:
+        raise InputError(f"expected at least one cell each way, got {m} x {n}")
     if m * n > _MOST_CELLS:
         raise InputError(f"expected at most {_MOST_CELLS:,} cells, got {m} x {n}")
     return m, n
