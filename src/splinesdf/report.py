@@ -168,7 +168,10 @@ def print_tables(rows: Iterable[Row]) -> None:
             _printed(row),
             f"{row.true_error:.4e}",
         )
-    table.caption = "* the printed digits are not the computed ones, rounded"
+    table.caption = (
+        "* the printed digits are not the computed ones, rounded: table 2, V, k = 3 has a wrong\n"
+        "  exponent; table 2, W, k = 0 is cut off and not rounded; table 6, k = 4 is 2 % too small"
+    )
     table.caption_justify = "left"
     _console(least=90).print(table)
 
