@@ -187,7 +187,9 @@ def query(source: str, points: str, output: str | None, fill: str | None, close:
 
 @commands.command()
 @click.option("--tables", is_flag=True, help="Print Tables 1-7 beside the printed values.")
-@click.option("--figures", metavar="DIR", help="Draw Figures 5-12 into a folder.")
+@click.option(
+    "--figures", metavar="DIR", help="Draw Figures 5-12 into a folder: figure_05.png and so on."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the tables as JSON.")
 def paper(tables: bool, figures: str | None, as_json: bool) -> None:
     """Recompute the tables and figures of the paper that this package grew from."""

@@ -186,7 +186,8 @@ def plot_surface(spline: SplineSDF, ax: Any) -> None:
     ax.tick_params(labelsize=8, labelcolor=INK, pad=0)
     ax.set_xlabel("x", fontsize=8, color=INK, labelpad=-4)
     ax.set_ylabel("y", fontsize=8, color=INK, labelpad=-4)
-    ax.set_zlabel("distance", fontsize=8, color=INK, labelpad=5)
+    ax.set_zlabel("distance", fontsize=8, color=INK, labelpad=3)
+    ax.patch.set_visible(False)  # else it would hide the label of axes to the left
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         axis.pane.set_visible(False)
         axis.line.set_color(FAINT)

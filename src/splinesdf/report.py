@@ -228,7 +228,10 @@ def print_tables(rows: Iterable[Row]) -> None:
             f"{row.true_error:.4e}",
         )
     _print_table(table)
-    _print_line("* the printed digits are not the computed ones, rounded")
+    _print_line(
+        "* the printed digits are not the computed ones, rounded: table 2, V, k = 3 has a wrong "
+        "exponent; table 2, W, k = 0 is cut off and not rounded; table 6, k = 4 is 2 % too small"
+    )
 
 
 def _printed(row: Row) -> str:
