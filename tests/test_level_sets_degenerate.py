@@ -120,6 +120,7 @@ def check_values_and_ends(spline: SplineSDF, contours: list[Contour], tolerance:
 @example(749330, "tensor", "whole", -1.0)  # the same
 @example(768250, "hierarchical", "whole", 0.5)  # an ellipse that is a point
 @example(15, "hierarchical", "whole", 0.5)  # a saddle at the level inside a triangle
+@example(999999, "hierarchical", "whole", 0.5)  # an ellipse that touches a side in a vertex
 def test_area_below_the_level_is_what_pixels_say(
     seed: int, space: str, draw: str, level: float
 ) -> None:
