@@ -16,7 +16,7 @@ from tests.examples import USUAL
 settings.register_profile("same", deadline=None, derandomize=True, print_blob=True)
 # So many times as many examples as by default. More finds more and takes longer: all properties
 # take about an hour of CPU. What is slow to draw is drawn nevertheless.
-SEARCH = 20
+SEARCH = 40
 settings.register_profile(
     "search",
     deadline=None,
