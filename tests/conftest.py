@@ -10,16 +10,18 @@ from __future__ import annotations
 
 from hypothesis import HealthCheck, settings
 
+from tests.examples import USUAL
+
 # Compilation makes the first example slow: no deadline.
 settings.register_profile("same", deadline=None, derandomize=True, print_blob=True)
 # So many times as many examples as by default. More finds more and takes longer: all properties
 # take about an hour of CPU. What is slow to draw is drawn nevertheless.
-SEARCH = 20
+SEARCH = 40
 settings.register_profile(
     "search",
     deadline=None,
     derandomize=False,
-    max_examples=SEARCH * settings.get_profile("same").max_examples,
+    max_examples=SEARCH * USUAL,
     print_blob=True,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )

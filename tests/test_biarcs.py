@@ -169,3 +169,21 @@ def test_level_and_parent_are_kept() -> None:
     inner = Contour(0.5 * outer.arcs, outer.weights, True, -2.0, True, outer)
     result = ss.as_arcs(inner, tolerance=1e-3)
     assert (result.distance, result.y_down, result.parent) == (-2.0, True, outer)
+
+
+@pytest.mark.parametrize("way", [(0.0, 0.0), (64.0, -32.0), (-4096.0, 0.0)])
+def test_the_same_arcs_wherever_it_lies(way: tuple[float, float]) -> None:
+    """Lengths are differences: a line next to the origin is no shorter than elsewhere."""
+    # Two parabolas, and between them, in the origin, lines of 2e-3 and of 0.5, all smooth.
+    curve = np.array([[[-2.0, -1.0], [-1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [1.0, 0.0], [2.0, 1]]])
+    for length in (2.0**-9, 0.5):
+        between = line(0j, complex(length)).arcs
+        arcs = np.concatenate([curve[:1], between, curve[1:] + np.array([length, 0.0])])
+        chain = Contour(arcs + way, np.ones(3), closed=False)
+        result = check(chain, 1e-2)
+        exact = (result.arcs[:, ::2] == between[:, ::2] + way).all(axis=(1, 2))
+        # Shorter than the tolerance it is passed through, else it stays to the bit.
+        assert exact.sum() == (0 if length < 1e-2 else 1)
+        home = ss.as_arcs(Contour(arcs, np.ones(3), closed=False), tolerance=1e-2)
+        assert len(result.arcs) == len(home.arcs)
+        assert_allclose(result.arcs - way, home.arcs, rtol=0.0, atol=1e-11)

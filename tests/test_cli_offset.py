@@ -146,7 +146,7 @@ def test_steps_are_handed_on(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(ss, "offset", offset)
     status, out, _ = run("gamma1", "--step", "0.5", "--tolerance", "1e-3", "-o", "a.geojson")
     assert status == 0
-    assert asked == {"step": 0.5, "tolerance": pytest.approx(1.25e-4)}
+    assert asked == {"step": 0.5, "tolerance": pytest.approx(1.25e-4), "coarse": True}
     assert "+0.5" in out
     assert "+1" in out
     features = json.loads((tmp_path / "a.geojson").read_text())["features"]

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import splinesdf as ss
@@ -100,6 +100,8 @@ class Moved:
         self.home = home
         self.way = np.array([way.real, way.imag])
         self.far = replace(home, arcs=home.arcs + self.way)
+        # A contour below an ulp is a point there, which is refused.
+        assume(np.ptp(self.far.arcs, axis=(0, 1)).max() > 0.0)
         self.largest = float(np.abs(self.far.arcs).max())
         self.size = float(np.ptp(home.arcs.reshape(-1, 2), axis=0).max())
         # Below rounding a tolerance is refused.
@@ -148,7 +150,7 @@ def test_length_and_area(home: Contour, way: complex) -> None:
     )
 
 
-@examples(200)
+@examples(100)
 @given(contours(), ways, tolerances)
 def test_circular_arcs(home: Contour, way: complex, share: float) -> None:
     moved = Moved(home, way, share)
@@ -162,7 +164,7 @@ def test_circular_arcs(home: Contour, way: complex, share: float) -> None:
     moved.check(dense(result, max(3, 400 // len(result.arcs))), fine + moved.way, moved.allowed)
 
 
-@examples(300)
+@examples(150)
 @given(contours(), ways, tolerances, st.sampled_from(FORMATS), st.booleans())
 def test_files(home: Contour, way: complex, share: float, name: str, arcs: bool) -> None:
     moved = Moved(home, way, max(share, 1e-6) if name[2] in "gwc" else share)

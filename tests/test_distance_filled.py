@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 import splinesdf as ss
@@ -271,6 +271,7 @@ def test_nasty_curves(name: str, fill: str) -> None:
 
 
 @given(st.integers(0, 10**9), st.integers(1, 4), st.integers(1, 2), rules)
+@example(4702, 4, 1, "nonzero")  # two neighbors that cross once more beside their joint
 @examples(60)
 def test_random_chains_of_cubics(seed: int, count: int, loops: int, fill: str) -> None:
     rng = np.random.default_rng(seed)

@@ -250,6 +250,38 @@ def test_numbers_have_no_exponents_at_any_scale(tmp_path: Path, power: int) -> N
         compare(cut, chain, 1e-4 * scale)
 
 
+@pytest.mark.parametrize("scale", [1e-30, 1e-12, 1e13])
+def test_no_size_is_rounded_away(tmp_path: Path, scale: float) -> None:
+    """Regression: a contour of 1e-30 became moves from zero to zero, with a depth of zero."""
+    chain = replace(mixed_chain(), arcs=scale * mixed_chain().arcs)
+    milling = ss.Milling(depth=2.5e-7, safe_height=0.25, feed=0.125)
+    ss.write(tmp_path / "a.nc", [chain], tolerance=1e-3 * scale, milling=milling)
+    text = (tmp_path / "a.nc").read_text()
+    assert "Z0.25\n" in text
+    assert "G1 Z-0.00000025 F0.125\n" in text
+    words = re.findall(r"X(\S+) Y(\S+)", text)
+    at = np.array(words, dtype=float) / scale
+    assert len(np.unique(at.round(3), axis=0)) > 5
+    assert apart(at, mixed_chain(), 1e-5).max() <= 1e-3 + 1e-5
+
+
+def test_flat_arcs_are_read_as_they_are(tmp_path: Path) -> None:
+    """Regression: a center 1e9 away, of which a machine is off by more than the tolerance."""
+    radius, tolerance = 1e9, 1e-7
+    arc = circular(radius, complex(0.0, radius), -0.5 * math.pi, 1e3 / radius, 1)
+    chain = replace(arc, distance=-1.0)
+    ss.write(tmp_path / "a.nc", [chain], tolerance=tolerance)
+    text = (tmp_path / "a.nc").read_text()
+    assert "G2" not in text
+    assert "G3" not in text
+    words = re.findall(r"G1 X(\S+) Y(\S+)", text)
+    line = np.array(words, dtype=float)
+    # y = x² / 2r, to 1e-13, in ends and middles of the chords.
+    middles = 0.5 * (line[1:] + line[:-1])
+    for x, y in np.concatenate([line, middles]):
+        assert y == pytest.approx(x * x / (2.0 * radius), abs=tolerance)
+
+
 def test_far_from_the_origin(tmp_path: Path) -> None:
     chain = ellipse(center=(1e6, -1e6))
     (cut,) = program(tmp_path, [chain], tolerance=1e-4).cuts

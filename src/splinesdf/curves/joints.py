@@ -24,8 +24,8 @@ CUSP = 1e-3
 _ARCLETS = 24
 # Steps to the nearest point of the other branch; arclets are nearly straight.
 _STEPS = 8
-# Branches that are no farther apart than this share of the largest coordinate are so by rounding, or
-# were cut there where they count as touching (64 ulp, see `boundary`).
+# Branches that are no farther apart than this share of the largest coordinate are so by rounding,
+# or were cut there where they count as touching (64 ulp, see `boundary`).
 _APART = 512 * 2.220446049250313e-16
 # Rounding in a velocity, as a share of the largest coordinate; over its length, in its direction:
 # turns within that are none. Larger: real corners are rounded off over 1e-15 of the size.

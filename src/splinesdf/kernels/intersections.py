@@ -221,7 +221,9 @@ def _meet(
         if smallest > 2.0 * miss or largest < -2.0 * miss:
             continue
         flat = max(largest, -smallest) + miss <= tolerance
-        fits = miss <= 0.25 * tolerance
+        # Beside a zero in an end, as in a joint, a change of sign is one more root.
+        alone = changes == 0 or (values[0] != 0.0 and values[7] != 0.0)
+        fits = miss <= 0.25 * tolerance and alone
         if flat or (fits and changes <= 1) or high - low <= tolerance or size + 2 > _DEPTH:
             if crosses:
                 u = 0.5 * (low + high)

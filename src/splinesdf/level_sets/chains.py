@@ -127,9 +127,16 @@ def _around(f: Quadratics, first: Floats, last: Floats, shortest: float) -> tupl
     chord = last - first
     gradient = f.gradient_at(first)
     backward = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] < 0.0
+    # A chord of no length at all has no direction: an ellipse touches a side in a vertex at the
+    # level. Beside it the side is below, so the ellipse goes around what is above, and all around.
+    point = np.asarray(~chord.any(axis=1))
+    backward |= point & (np.trace(f.hessian, axis1=1, axis2=2) < 0.0)
     rows = np.flatnonzero(backward & (np.linalg.norm(chord, axis=1) < shortest))
-    f = f.take(rows)
-    far = shoulders(f, first[rows], last[rows])
+    f, point = f.take(rows), point[rows]
+    inside = f.contains_ellipse()
+    rows, f, point = rows[inside], f.take(np.flatnonzero(inside)), point[inside]
+    across = 2.0 * (f.center + f.extremes()[0]) - first[rows]
+    far = np.where(point[:, None], across, shoulders(f, first[rows], last[rows]))
     # What rounding sends backward stays near, or would leave the triangle on the way round.
-    there = (np.linalg.norm(far - first[rows], axis=1) > shortest) & f.contains_ellipse()
+    there = np.linalg.norm(far - first[rows], axis=1) > shortest
     return rows[there], far[there]
