@@ -164,6 +164,7 @@ class Asked(NamedTuple):
     anchor: Floats  # (n, 3) a point and its exact signed distance
     low: Floats  # (n, 2) what is known of the largest error on its halves: at least this
     bands: Floats  # (k, 2) only where the distance or the spline is in one; none for everywhere
+    around: bool  # or one is above a band where the other is below it
     largest: float  # largest coordinate of all, for rounding
     threshold: float  # an error below it need not be known better
     tight: float  # nor one that is known to this share of the largest on its triangle

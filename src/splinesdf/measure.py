@@ -33,8 +33,9 @@ _PATIENCE = 3
 # How often open triangles are halved twice. Twelve times divide the length by 4096: the Lipschitz
 # bound is then within half a percent of what is large in a cell. Without a proof once is all.
 _ROUNDS, _SAMPLED_ROUNDS = 12, 1
-# Parts of a cell that are looked at to know the largest error of all.
-_EFFORT = 20_000
+# Parts of an eighth that may be looked at before it is left as it is, and to know the largest
+# error of all. More: slower where no proof is to be had; fewer: good cells are halved in vain.
+_GLANCE, _EFFORT = 100, 20_000
 # Cells whose error is looked at together when the largest of all is sought. More: some in vain;
 # fewer: more rounds.
 _TOGETHER = 64
@@ -42,6 +43,8 @@ _TOGETHER = 64
 # allows for (256 units in the last place, of a coordinate and of a distance). Less: where the
 # spline is exact, seconds a cell are spent on noise; more: bounds above it are wider than need be.
 _NOISE = 2.5e-13
+# Rounding in distances and ordinates, as a share of the largest coordinate: that of the kernel.
+_GRAIN = 256 * 2.220446049250313e-16
 # Open triangles at a time: 100 MB. Beyond it they keep the bound that they have.
 _MOST_OPEN = 400_000
 
@@ -56,7 +59,11 @@ class Wanted(NamedTuple):
     threshold: float  # below it, it need not be known better
     enough: float = np.inf  # an eighth that is known to exceed it is left
     tight: float = TIGHT  # bracketed to this share of it
-    effort: int = 100  # parts of an eighth that may be looked at before it is left as it is
+    effort: int = _GLANCE  # parts of an eighth that may be looked at before it is left as it is
+    # Points count as well in which the spline is above a band and the distance below it, or the
+    # other way round. A spline that is wrong there has its level somewhere beside them, and the
+    # error in the band does not get smaller by halving cells at that level only.
+    around: bool = False
     proved: bool = True  # otherwise what stays open is sampled and taken as it is
 
 
@@ -158,6 +165,7 @@ def _enclose(
             anchor=anchor[block],
             low=known[block],
             bands=search.bands,
+            around=wanted.around,
             largest=search.largest,
             threshold=wanted.threshold,
             tight=wanted.tight,
@@ -203,16 +211,18 @@ def _sample(search: _Search, part: Ints, triangles: Floats, last: bool) -> tuple
     reach = np.sqrt(np.sum(arms * arms, axis=2).max(axis=1))
     exact = signed_distance(search.shape, middle + search.shape.boundary.origin)
     c = triangles[:, 6:]
-    error = np.abs(0.25 * (c[:, 0] + 2.0 * c[:, 3] + c[:, 1]) - exact)
+    error = np.abs(_middle(c) - exact)
+    grain = _GRAIN * search.largest
     slope = np.empty(len(part))
     steepest(triangles, slope)
-    bound = error + (1.0 + slope) * reach
+    spread = (1.0 + slope) * reach + grain
+    bound = error + spread
     if not wanted.proved and last:
         bound = error
-    meets = np.ones(len(part), dtype=np.bool_)
+    seen, meets = error, np.ones(len(part), dtype=np.bool_)
     if len(search.bands):
-        meets = _meets(search.bands, exact, reach, c)
-    np.maximum.at(low, part[meets], error[meets])
+        seen, meets = _in_bands(search, exact, c, error, (spread, reach + grain, grain))
+    np.maximum.at(low, part[meets], seen[meets])
     counts[part[meets]] = True
     known = low[part]
     enough = np.maximum(wanted.threshold, (1.0 + wanted.tight) * known)
@@ -253,33 +263,77 @@ def largest_error(
     """
     bands = np.empty((0, 2)) if bands is None else bands
     noise = _NOISE * _largest_of(shape, spline)
+    if known is not None and len(bands):  # what was seen may lie around a band
+        known = known._replace(low=np.zeros_like(known.low))
     if known is None:
         error = np.abs(center_ordinates(spline.ordinates)[1] - center)
         wanted = Wanted((1.0 + TIGHT) * float(error.max()) + noise)
         known = cell_errors(shape, spline, np.arange(len(center)), center, bands, wanted)
     low, high = (np.where(known.counts, values, 0.0) for values in known[:2])
+    # Where nothing is known from below, a glance first: most cells need no more then.
+    effort = _EFFORT if low.any() else _GLANCE
     while True:
         largest = float(low.max(initial=0.0))
         enough = (1.0 + TIGHT) * largest + noise
         cells = np.flatnonzero(high > enough)
         # The most promising first: once its error is known, few others can exceed it.
         cells = cells[np.argsort(-high[cells], kind="stable")][:_TOGETHER]
-        wanted = Wanted(enough, effort=_EFFORT)
+        wanted = Wanted(enough, effort=effort)
         found = cell_errors(shape, spline, cells, center[cells], bands, wanted)
         improved = (found.low > low[cells]) | (found.high < high[cells])
-        if not improved.any():  # or no cell was left
+        if effort == _EFFORT and not improved.any():  # or no cell was left
             return largest, float(high.max(initial=0.0))
         low[cells] = np.maximum(low[cells], found.low)
         high[cells] = np.minimum(high[cells], found.high)
+        effort = _EFFORT
 
 
-def _meets(bands: Floats, exact: Floats, reach: Floats, c: Floats) -> Bools:
-    """Whether the distance or the spline can take a value of a band on triangles."""
-    least, most = c.min(axis=1)[:, None], c.max(axis=1)[:, None]
-    lows, highs = bands.T
-    distance = (exact + reach)[:, None] >= lows
-    distance &= (exact - reach)[:, None] <= highs
-    return np.asarray(np.any(distance | ((most >= lows) & (least <= highs)), axis=1))
+def _in_bands(
+    search: _Search,
+    exact: Floats,
+    c: Floats,
+    error: Floats,
+    margins: tuple[Floats, Floats, float],
+) -> tuple[Floats, Bools]:
+    """What |s - u| is at least in a point of a band on each triangle, and whether it can meet one.
+
+    In the middle of the longest side it is ``error``, and that counts if this point does. On all
+    of the triangle it is less by the first margin at most; that counts if the spline takes a value
+    of a band in one of four points, or between them. The other margins are those of the distance
+    and of the spline's coefficients.
+    """
+    spread, reach, grain = margins
+    around = search.wanted.around
+    lows, highs = search.bands[:, 0, None], search.bands[:, 1, None]
+    spline = np.column_stack([c[:, :3], _middle(c)])
+    at = _counts((spline[:, 3], spline[:, 3]), (exact, exact), lows, highs, around)
+    taken = spline.min(axis=1), spline.max(axis=1)
+    some = _counts(taken, (exact, exact), lows, highs, around)
+    seen = np.where(some, np.maximum(error - spread, 0.0), 0.0)
+    possible = c.min(axis=1) - grain, c.max(axis=1) + grain
+    meets = _counts(possible, (exact - reach, exact + reach), lows, highs, around)
+    return np.where(at, error, seen), meets
+
+
+def _counts(
+    spline: tuple[Floats, Floats],
+    distance: tuple[Floats, Floats],
+    lows: Floats,
+    highs: Floats,
+    around: bool,
+) -> Bools:
+    """Whether from least to most the spline or the distance is in a band, or both are around it."""
+    below, above = spline[0] <= highs, spline[1] >= lows
+    nearer, farther = distance[0] <= highs, distance[1] >= lows
+    found = (below & above) | (nearer & farther)
+    if around:
+        found = (below | nearer) & (above | farther)
+    return np.asarray(np.any(found, axis=0))
+
+
+def _middle(c: Floats) -> Floats:
+    """The spline halfway along the longest side of triangles with coefficients (n, 6)."""
+    return 0.25 * (c[:, 0] + 2.0 * c[:, 3] + c[:, 1])
 
 
 def _quarters(boxes: Floats, ordinates: Floats) -> Floats:

@@ -21,6 +21,7 @@ from splinesdf.curves.joints import joints
 from splinesdf.curves.kinds import kinds
 from splinesdf.curves.loops import closed_loops
 from splinesdf.curves.nurbs import nurbs_pieces
+from splinesdf.curves.repeats import drawn_once, repeats_note
 from splinesdf.curves.svg_path import parse_path
 from splinesdf.curves.vertices import Vertices, vertices
 from splinesdf.errors import InputError
@@ -74,11 +75,12 @@ class Shape:
         cls,
         loops: Iterable[Sequence[ArrayLike]],
         *,
-        fill: str = "nonzero",
+        fill: str | None = None,
         close: bool = False,
         y_down: bool = False,
         name: str = "",
         notes: tuple[str, ...] = (),
+        once: bool | None = None,
     ) -> Shape:
         """Assemble a shape from loops of Bézier pieces of any degree.
 
@@ -86,9 +88,14 @@ class Shape:
         ----------
         loops : iterable of sequences of array_like, shape (degree + 1, 2)
             The control points of each piece of each loop. Pieces of length zero are dropped.
-        fill : {"nonzero", "evenodd"}
+        fill : {"nonzero", "evenodd"}, optional
+            Nonzero unless given.
         close : bool
             Close an open loop by a straight piece instead of refusing it.
+        once : bool, optional
+            Count a contour that is drawn several times once, wherever it starts, is cut, or
+            leads, and say so in the notes. Under either rule a hole would vanish that is drawn
+            twice. True unless ``fill`` is given, which then decides.
 
         Raises
         ------
@@ -98,8 +105,12 @@ class Shape:
             If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
             the coordinates, nothing is left, or ``fill`` is unknown.
         """
-        rule = _fill_rule(fill)
+        rule = _fill_rule("nonzero" if fill is None else fill)
         closed = closed_loops(loops, close=close)
+        # By itself, a contour fills the same under nonzero however often it is traced.
+        if (fill is None if once is None else once) and (len(closed) > 1 or rule == "evenodd"):
+            closed, repeated = drawn_once(closed)
+            notes = (*notes, *repeats_note(repeated))
         flat = [piece for loop in closed for piece in loop]
         return cls(
             control=np.concatenate(flat),
@@ -118,7 +129,7 @@ class Shape:
         y: str,
         *,
         t: tuple[float | str, float | str] = (0.0, "2*pi"),
-        fill: str = "nonzero",
+        fill: str | None = None,
         name: str = "",
     ) -> Shape:
         """One closed curve given by two formulas in ``t``.
@@ -141,7 +152,7 @@ class Shape:
         cls,
         sections: Iterable[tuple[str, str, tuple[float | str, float | str]]],
         *,
-        fill: str = "nonzero",
+        fill: str | None = None,
         close: bool = False,
         name: str = "",
     ) -> Shape:
@@ -186,7 +197,7 @@ class Shape:
         knots: ArrayLike | None = None,
         weights: ArrayLike | None = None,
         periodic: bool = False,
-        fill: str = "nonzero",
+        fill: str | None = None,
         close: bool = False,
         name: str = "",
     ) -> Shape:
@@ -224,7 +235,7 @@ class Shape:
 
     @classmethod
     def from_points(
-        cls, points: ArrayLike, *, smooth: bool = False, fill: str = "nonzero", name: str = ""
+        cls, points: ArrayLike, *, smooth: bool = False, fill: str | None = None, name: str = ""
     ) -> Shape:
         """One closed polygon, or with ``smooth=True`` the periodic C² cubic through its corners.
 
@@ -241,7 +252,7 @@ class Shape:
 
     @classmethod
     def from_svg_path(
-        cls, path: str, *, fill: str = "nonzero", close: bool = False, name: str = ""
+        cls, path: str, *, fill: str | None = None, close: bool = False, name: str = ""
     ) -> Shape:
         """The subpaths of SVG path data (the ``d`` attribute), coordinates as written.
 

@@ -87,7 +87,7 @@ def quarter(triangles: Floats, quarters: Floats) -> None:
 
 
 @kernel
-def _stack() -> tuple[Floats, Ints, Ints, Floats, Floats]:
+def _stack() -> tuple[Floats, Ints, Ints, Floats, Floats, Floats]:
     """Room for the parts of a triangle that are still to be looked at, and for one of them."""
     size = _DEPTH + 4
     return (
@@ -96,6 +96,7 @@ def _stack() -> tuple[Floats, Ints, Ints, Floats, Floats]:
         np.empty((size, _MOST), dtype=np.int64),  # those arclets
         np.empty((_MOST, 8)),  # see `gather`
         np.empty((_POINTS, 12)),  # see `find_chains` and `_bound`
+        np.empty(3),  # s - u at the corners
     )
 
 
@@ -106,12 +107,12 @@ def _enclose_one(
     candidates: Candidates,
     asked: Asked,
     k: int,
-    stack: tuple[Floats, Ints, Ints, Floats, Floats],
+    stack: tuple[Floats, Ints, Ints, Floats, Floats, Floats],
     brackets: Brackets,
 ) -> None:
     """Bracket the error on both halves of triangle k."""
     arcs, rows, second = arclets.arcs, bends.rows, bends.second
-    parts, sizes, lists, near, models = stack
+    parts, sizes, lists, near, models, errors = stack
     group = asked.group[k]
     kept = candidates.nodes[candidates.starts[group] : candidates.starts[group + 1]]
     parts[0] = asked.triangles[k]
@@ -137,7 +138,9 @@ def _enclose_one(
         exact = False
         nearest, spare = 0.0, 0.0
         sign, chains = 0, 0
-        lo, hi, found = -np.inf, np.inf, 0.0
+        lo, hi = -np.inf, np.inf
+        value, room, margin = 0.0, np.inf, np.inf
+        errors[:] = 0.0
         if sizes[size, 1] >= 0:
             sizes[size, 1], nearest, exact = gather(
                 arcs, rows, second, lists[size], sizes[size, 1], (px, py, r), near
@@ -148,13 +151,15 @@ def _enclose_one(
             elif exact:
                 sign = side_of(bends, lists[size], near, sizes[size, 1], nearest, grain)
         if exact:
-            chains = find_chains(arclets, bends, lists[size], sizes[size, 1], px, py, r, stack[3:])
+            chains = find_chains(
+                arclets, bends, lists[size], sizes[size, 1], px, py, r, (near, models)
+            )
             if (chains > 1 or models[0, 5] > 0.0) and (sign == 0 or nearest <= r + grain):
                 chains = 0
             if sign != 0:
                 value = 0.25 * (c[0] + 2.0 * c[3] + c[1]) - sign * nearest
                 reach = (1.0 + _steepest(triangle)) * r + grain
-                lo, hi, found = value - reach, value + reach, abs(value) - grain
+                lo, hi, room = value - reach, value + reach, grain
         if chains == 0 and sizes[size, 1] >= 0 and sign != 0 and depth >= _POINT_DEPTH:
             spare = _SPARE * max(asked.threshold, low) * 0.5 ** (0.5 * depth)
             chains = find_points(
@@ -163,10 +168,10 @@ def _enclose_one(
             effort += chains // _DEAR
         if chains > 0:
             enough = max(asked.threshold, (1.0 + asked.tight) * low)
-            lower, upper, seen = _bound(
-                triangle, c, px, py, sign, chains, models, enough, spare, grain
+            lower, upper, margin = _bound(
+                triangle, c, px, py, sign, chains, models, enough, spare, grain, errors
             )
-            lo, hi, found = max(lo, lower), min(hi, upper), max(found, seen)
+            lo, hi = max(lo, lower), min(hi, upper)
         if asked.bands.shape[0] > 0:
             # All that the distance may be on the triangle, as it is 1-Lipschitz.
             reach = math.sqrt((px - anchor_x) ** 2 + (py - anchor_y) ** 2) + r + grain
@@ -174,8 +179,11 @@ def _enclose_one(
             if exact and sign != 0:
                 low_u = max(low_u, sign * nearest - r - grain)
                 high_u = min(high_u, sign * nearest + r + grain)
-            if _out_of_bands(asked.bands, low_u, high_u, c):
+            if not _meets(asked, low_u, high_u, c, grain):
                 continue
+            found = _seen_in_bands(asked, c, errors, margin, value, room, max(lo, -hi))
+        else:
+            found = _seen(errors, margin, value, room)
         low = max(low, found)
         bound = max(-lo, hi)
         good = bound <= max(asked.threshold, (1.0 + asked.tight) * low)
@@ -265,16 +273,70 @@ def _steepest(triangle: Floats) -> float:
 
 
 @kernel
-def _out_of_bands(bands: Floats, low: float, high: float, c: Floats) -> bool:
-    """Whether neither the distance, from low to high, nor the spline can be in a band."""
-    least = min(c[0], c[1], c[2], c[3], c[4], c[5])
-    most = max(c[0], c[1], c[2], c[3], c[4], c[5])
+def _meets(asked: Asked, low: float, high: float, c: Floats, grain: float) -> bool:
+    """Whether the distance, from low to high, or the spline can be in a band, or around it."""
+    bands = asked.bands
+    least = min(c[0], c[1], c[2], c[3], c[4], c[5]) - grain
+    most = max(c[0], c[1], c[2], c[3], c[4], c[5]) + grain
     for k in range(bands.shape[0]):
-        if high >= bands[k, 0] and low <= bands[k, 1]:
-            return False
-        if most >= bands[k, 0] and least <= bands[k, 1]:
-            return False
-    return True
+        spline = (least <= bands[k, 1], most >= bands[k, 0])
+        distance = (low <= bands[k, 1], high >= bands[k, 0])
+        if _counts(spline, distance, asked.around):
+            return True
+    return False
+
+
+@kernel
+def _seen(errors: Floats, margin: float, value: float, room: float) -> float:
+    """What |s - u| is at least in a corner or in p, where it is known up to some margins."""
+    corners = max(abs(errors[0]), abs(errors[1]), abs(errors[2]))
+    return float(max(0.0, corners - margin, abs(value) - room))
+
+
+@kernel
+def _seen_in_bands(
+    asked: Asked,
+    c: Floats,
+    errors: Floats,
+    margin: float,
+    value: float,
+    room: float,
+    everywhere: float,
+) -> float:
+    """What |s - u| is at least in some point of a triangle that counts for the bands.
+
+    It is at least ``everywhere`` on all of it. That counts if the spline, or the distance, is
+    known to be below a band's end in one point and above its other end in one, as both are
+    continuous.
+    """
+    bands = asked.bands
+    found = 0.0
+    middle = 0.25 * (c[0] + 2.0 * c[3] + c[1])
+    for k in range(bands.shape[0]):
+        low, high = bands[k, 0], bands[k, 1]
+        spline_below = spline_above = below = above = False
+        for v in range(4):
+            spline, error, unsure = middle, value, room
+            if v < 3:
+                spline, error, unsure = c[v], errors[v], margin
+            distance = spline - error
+            first = (spline <= high, spline >= low)
+            second = (distance + unsure <= high, distance - unsure >= low)
+            if _counts(first, second, asked.around):
+                found = max(found, abs(error) - unsure)
+            spline_below, spline_above = spline_below or first[0], spline_above or first[1]
+            below, above = below or second[0], above or second[1]
+        if _counts((spline_below, spline_above), (below, above), asked.around):
+            found = max(found, everywhere)
+    return found
+
+
+@kernel
+def _counts(spline: tuple[bool, bool], distance: tuple[bool, bool], around: bool) -> bool:
+    """Whether one is below and above a band's ends, or both together are."""
+    if around:
+        return (spline[0] or distance[0]) and (spline[1] or distance[1])
+    return (spline[0] and spline[1]) or (distance[0] and distance[1])
 
 
 @kernel
@@ -289,10 +351,12 @@ def _bound(
     enough: float,
     spare: float,
     grain: float,
+    errors: Floats,
 ) -> tuple[float, float, float]:
-    """Lower and upper bound of the error on a triangle, and what |error| is at least somewhere.
+    """Lower and upper bound of the error on a triangle, and the margin of those at its corners.
 
-    The coefficients of each chain's difference are put behind its model, in models[:, 6:].
+    These are filled into ``errors``. The coefficients of each chain's difference are put behind
+    its model, in models[:, 6:].
     """
     single = chains == 1 and models[0, 5] == 0.0
     scale = 1.0 if single else float(sign)
@@ -319,18 +383,17 @@ def _bound(
         lower = max(lower, least - rest)
         upper = max(upper, most + rest)
         most_rest = max(most_rest, rest)
-    seen = 0.0
     for v in range(3):
         value = -np.inf
         for m in range(chains):
             value = max(value, models[m, 6 + v])
-        seen = max(seen, abs(value))
+        errors[v] = scale * value
     if chains > 1 and -lower > enough:
         lower = max(lower, _mean(models, chains, enough))
     upper += spare
     if scale < 0.0:
         lower, upper = -upper, -lower
-    return lower - grain, upper + grain, seen - most_rest - spare - grain
+    return lower - grain, upper + grain, most_rest + spare + grain
 
 
 @kernel

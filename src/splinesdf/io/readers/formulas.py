@@ -43,7 +43,7 @@ def formula_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
     else:
         _check_keys(content, ("loops", *_WHOLE))
         loops = _several(content, "loops", _loop)
-    return Shape.from_pieces(loops, fill=rule, close=close, name=name)
+    return Shape.from_pieces(loops, fill=rule, close=close, name=name, once=fill is None)
 
 
 def _several(

@@ -23,8 +23,7 @@ def points_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
             loops.append(polygon(points))
         except InputError as error:
             raise InputError(f"points from line {line} on: {error}") from error
-    rule = "nonzero" if fill is None else fill
-    return Shape.from_pieces(loops, fill=rule, close=close, name=stem)
+    return Shape.from_pieces(loops, fill=fill, close=close, name=stem)
 
 
 def read_blocks(text: str, *, finite: bool) -> list[tuple[int, Floats]]:

@@ -20,6 +20,7 @@ import numpy as np
 
 from splinesdf._arrays import Floats
 from splinesdf.curves.interpolate import compile_arc
+from splinesdf.curves.repeats import drawn_once, first_of_each, repeats_note
 from splinesdf.curves.shape import Shape
 from splinesdf.curves.svg_path import closing_piece, parse_numbers, parse_path
 from splinesdf.errors import InputError
@@ -96,9 +97,47 @@ def svg_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
             "expected a path, rect, circle, ellipse, polygon or polyline that encloses something, "
             f"got none{f' ({notes[0]})' if notes else ''}"
         )
-    loops = [loop for outline in painted for loop in outline.loops]
     rule = fill if fill is not None else _fill_rule(painted)
-    return Shape.from_pieces(loops, fill=rule, close=close, y_down=True, name=stem, notes=notes)
+    if fill is None:
+        painted, repeated = _drawn_once(painted)
+        notes = (*notes, *repeats_note(repeated))
+    loops = [loop for outline in painted for loop in outline.loops]
+    return Shape.from_pieces(
+        loops, fill=rule, close=close, y_down=True, name=stem, notes=notes, once=False
+    )
+
+
+def _drawn_once(outlines: list[_Outline]) -> tuple[list[_Outline], list[str]]:
+    """Outlines without what repeats something; that in words.
+
+    A contour counts once in its element, and once an element that repeats another one as a whole:
+    what two different elements share may be a hole of one that the other fills. In a drawing of
+    mere outlines, which fill nothing, a contour counts once wherever it is.
+    """
+    names = [f"{outline.tag} {k}" for k, outline in enumerate(outlines, 1)]
+    left, again = [], []
+    for name, outline in zip(names, outlines, strict=True):
+        loops, repeated = drawn_once(outline.loops)
+        left.append(outline._replace(loops=loops))
+        again += [f"{name}: {words}" for words in repeated]
+    first = first_of_each([loop for outline in left for loop in outline.loops])
+    ends = np.cumsum([len(outline.loops) for outline in left])
+    mere = not any(outline.context.filled for outline in outlines)
+    result: list[_Outline] = []
+    seen: dict[frozenset[int], str] = {}
+    for name, outline, end in zip(names, left, ends.tolist(), strict=True):
+        numbers = range(end - len(outline.loops), end)
+        contours = frozenset(first[numbers].tolist())
+        if contours in seen:
+            again.append(f"{name} as {seen[contours]}")
+            continue
+        seen[contours] = name
+        new = [loop for k, loop in zip(numbers, outline.loops, strict=True) if first[k] == k]
+        if mere and len(new) < len(numbers):
+            again.append(f"{len(numbers) - len(new)} in {name}")
+            outline = outline._replace(loops=new)
+        result.append(outline)
+    return result, again
 
 
 def _root(text: str) -> ElementTree.Element:
