@@ -17,7 +17,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from ezdxf import bbox
 
 import splinesdf as ss
 from splinesdf.cli import main
@@ -59,8 +59,9 @@ def check_no_stubs(shape: ss.Shape, contours: list[Contour]) -> None:
 @pytest.mark.parametrize("row", VALUES, ids=[f"{r['file']} {r['distance']}" for r in VALUES])
 def test_loops_and_area_are_those_known(row: dict[str, str]) -> None:
     shape = ss.read(DATA / row["file"])
-    distance, tolerance = float(row["distance"]), TOLERANCE * shape.size
-    contours = ss.offset(shape, distance, tolerance=tolerance, coarse=True)
+    tolerance = TOLERANCE * shape.size
+    # Some distances are below the tolerance.
+    contours = ss.offset(shape, float(row["distance"]), tolerance=tolerance, coarse=True)
     assert len(contours) == int(row["loops"])
     # What rounding makes of the area of a triangle of 1e-9.
     rounding = slack(shape, 0.0) ** 2
@@ -79,9 +80,9 @@ def test_loops_and_area_are_those_known(row: dict[str, str]) -> None:
             *("circle_and_rect_at_utm.svg", -1.0, 1e-3, 2),
             *(math.pi * 4.0**2 + 18 * 8 - (4 - math.pi) * 2.0**2, 12),
         ),
-        ("bad_touching_triangles.svg", 1.0, 1e-3, 1, 1435.741988, 16),
-        ("bad_touching_triangles.svg", 3.0, 1e-3, 1, 2326.047188, 16),
-        ("bad_touching_triangles.svg", 10.0, 1e-3, 1, 5639.738246, 16),
+        ("bad_touching_triangles.svg", 1.0, 1e-3, 1, 1435.74198815, 16),
+        ("bad_touching_triangles.svg", 3.0, 1e-3, 1, 2326.0471887, 16),
+        ("bad_touching_triangles.svg", 10.0, 1e-3, 1, 5639.738245, 16),
         ("bad_touching_fan.svg", 2.0, 1e-3, 1, 433.142984, 16),
     ],
 )
@@ -240,12 +241,18 @@ Run = Callable[..., tuple[str, str]]
 
 
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Run ``splinesdf offset`` on one of the drawings in a folder of its own."""
+
     def run(file: str, *arguments: str) -> tuple[str, str]:
         monkeypatch.chdir(tmp_path)
-        result = CliRunner().invoke(main, ["offset", str(DATA / file), *arguments])
-        assert result.exit_code == 0, result.output
-        return result.stdout, result.stderr
+        given = ["splinesdf", "offset", str(DATA / file), *arguments]
+        monkeypatch.setattr(sys, "argv", given)
+        with pytest.raises(SystemExit) as caught:
+            main()
+        out, err = capsys.readouterr()
+        assert not caught.value.code, err
+        return out, err
 
     return run
 
@@ -253,18 +260,9 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
 def test_a_drawing_that_says_its_unit_is_not_called_another(run: Run, tmp_path: Path) -> None:
     """100 mm are 378 units: in mm, or with a note."""
     _, said = run("behaviour_mm.svg", "-d", "0.1", "--units", "mm", "-o", "x.dxf")
-    points = (
-        [
-            point
-            for entity in ezdxf.readfile(tmp_path / "x.dxf").modelspace()
-            for point in entity.flattening(0.01)
-        ]
-        if not re.search(r"note: .*\bmm\b", said)
-        else []
-    )
-    if points:
-        width = max(point[0] for point in points) - min(point[0] for point in points)
-        assert width == pytest.approx(80.0 + 0.2, abs=0.3)
+    if re.search(r"note: .*\bmm\b", said) is None:
+        box = bbox.extents(ezdxf.readfile(tmp_path / "x.dxf").modelspace())
+        assert box.size.x == pytest.approx(80.0 + 0.2, abs=0.3)
 
 
 def test_open_paths_end_to_end_are_one_loop(run: Run, tmp_path: Path) -> None:

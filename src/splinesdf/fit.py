@@ -186,7 +186,7 @@ def require_reached(result: FitResult) -> FitResult:
         "min_side": "lower min_side or raise tolerance",
         "refining": "take the next result",
     }[result.stopped]
-    missed = ">" if result.error > result.tolerance else "is not proved to be within the"
+    missed = ">" if result.error > (result.tolerance or 0.0) else "is not proved to be within the"
     raise ToleranceNotReached(
         f"error {result.error:.3g} {missed} tolerance {result.tolerance:.3g} after {result.cells} "
         f"cells ({result.stopped}): {advice}",
