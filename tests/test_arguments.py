@@ -56,7 +56,19 @@ KINDS: dict[str, str] = {
     "start": "numbers",
     **dict.fromkeys(
         (
-            *("shape", "space", "operator", "certify", "outside", "path", "fill", "close", "name"),
+            *(
+                "shape",
+                "space",
+                "operator",
+                "certify",
+                "coarse",
+                "fitted",
+                "outside",
+                "path",
+                "fill",
+                "close",
+                "name",
+            ),
             *("contours", "contour", "arcs", "units", "milling", "direction", "smooth", "periodic"),
             *("y_down", "notes", "loops", "sections", "x", "y", "mesh", "made", "closed", "parent"),
             *("function", "starts", "split", "columns", "rows", "spline", "ax", "result", "filled"),

@@ -221,7 +221,7 @@ def test_what_the_library_says_of_a_share_names_the_whole(
         raise ss.InputError(f"no such tolerance as {tolerance:g}")
 
     monkeypatch.setattr(ss, "offset", offset)
-    _, _, err = run("gamma1", "-d", "0.1", "--tolerance", "0.5", "-o", "a.svg")
+    _, _, err = run("gamma1", "-d", "3", "--tolerance", "0.5", "-o", "a.svg")
     assert "0.4375" in err
     assert "tolerance 0.5" in err
 
@@ -239,11 +239,11 @@ def test_no_point_of_the_plane_is_said_only_where_it_is_true(
         (("0",), True),
     ):
         asked = [word for d in distances for word in ("-d", d)]
-        status, _, err = run("gamma1", *asked, "--tolerance", "9", "-o", "a.svg")
+        status, _, err = run("gamma1", *asked, "--tolerance", "9", "--coarse", "-o", "a.svg")
         assert status == 2
         assert ("no point of the plane" in err) == (not there)
         assert ("tolerance 9" in err) == there
-    _, _, err = run("gamma1", "--step", "-0.4", "--tolerance", "9", "-o", "a.svg")
+    _, _, err = run("gamma1", "--step", "-0.4", "--tolerance", "9", "--coarse", "-o", "a.svg")
     assert "no point of the plane" not in err
 
 
@@ -254,7 +254,10 @@ def test_nothing_is_left_is_said_only_where_it_is_true(
         return [circle(1.0, distance=distance)] if distance > 0.0 else []
 
     monkeypatch.setattr(ss, "offset", offset)
-    asked = ("-d", "0.5", "-d", "-0.4", "-d", "-0.5", "--tolerance", "9", "-o", "a.csv")
+    asked = (
+        *("-d", "0.5", "-d", "-0.4", "-d", "-0.5"),
+        *("--tolerance", "9", "--coarse", "-o", "a.csv"),
+    )
     status, out, err = run("gamma1", *asked)
     assert status == 0, err
     told = {line.split()[0]: line for line in out.splitlines() if re.match(r"\s*[+-]\d", line)}

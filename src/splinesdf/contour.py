@@ -73,6 +73,8 @@ class Contour:
         for name in ("arcs", "weights"):
             object.__setattr__(self, name, as_floats(getattr(self, name), name))
         object.__setattr__(self, "distance", finite(self.distance, "distance"))
+        if self.tolerance is not None:
+            object.__setattr__(self, "tolerance", positive(self.tolerance, "tolerance"))
         if self.arcs.ndim != 3 or self.arcs.shape[1:] != (3, 2) or len(self.arcs) == 0:
             raise InputError(f"expected arcs of shape (n, 3, 2), n > 0, got {self.arcs.shape}")
         if self.weights.shape != self.arcs.shape[:1]:
