@@ -62,6 +62,7 @@ KINDS: dict[str, str] = {
                 "operator",
                 "certify",
                 "coarse",
+                "once",
                 "fitted",
                 "outside",
                 "path",
