@@ -104,10 +104,6 @@ def test_models_hold_all_over_their_disks(name: str) -> None:
     assert sum(seen) >= 100
 
 
-# An arc of a quarter turn at most is one arclet.
-ARC = ss.Shape.from_svg_path("M1 0Q1 0.7 0 1L-1 -1z")
-
-
 def foot_on(shape: ss.Shape, j: int, x: float, y: float) -> tuple[float, float, float, float]:
     """Distance, its gradient and the parameter of the foot of a point, seen from the origin."""
     arcs = shape.boundary.arcs
@@ -152,7 +148,7 @@ def test_the_least_bend_of_level_sets(reverse: bool) -> None:
             ]
             second = (values[0] - 2.0 * values[1] + values[2]) / (h * h)
             # Rounding over h², and the change of the second derivative within h.
-            assert second >= least - 1e-7 - 1e-2 * h / foot[0] ** 2 * 100.0
+            assert second >= least - 1e-7 - h / here[0] ** 2
     assert min(seen.values()) >= 30
 
 
@@ -181,6 +177,6 @@ def test_beside_an_arclet_its_side_is_known(turn: float, side: float) -> None:
     for t, way, sign in ((0.0, tangents[0], -1.0), (0.5, mean, 1.0), (1.0, tangents[1], 1.0)):
         for ahead in (0.0, 0.4, 0.78):
             assert least(t, way, sign * ahead) == 0.0
-    # Farther ahead both sides are possible.
+    # Farther ahead both sides are possible, and the inner one bends to its center: no bound.
     for t, way, sign in ((0.0, tangents[0], -1.0), (1.0, tangents[1], 1.0)):
-        assert least(t, way, sign * 0.81) == -1.0 / (1.0 - 1.1) if 1.0 - 1.1 > 0.0 else True
+        assert least(t, way, sign * 0.81) == -np.inf

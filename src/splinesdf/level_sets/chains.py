@@ -129,9 +129,10 @@ def _around(f: Quadratics, first: Floats, last: Floats, shortest: float) -> tupl
     backward = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] < 0.0
     # A chord of no length at all has no direction: an ellipse touches a side in a vertex at the
     # level. Beside it the side is below, so the ellipse goes around what is above, and all around.
-    point = np.asarray(~chord.any(axis=1))
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    point = length == 0.0
     backward |= point & (np.trace(f.hessian, axis1=1, axis2=2) < 0.0)
-    rows = np.flatnonzero(backward & (np.linalg.norm(chord, axis=1) < shortest))
+    rows = np.flatnonzero(backward & (length < shortest))
     f, point = f.take(rows), point[rows]
     inside = f.contains_ellipse()
     rows, f, point = rows[inside], f.take(np.flatnonzero(inside)), point[inside]
