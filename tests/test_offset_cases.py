@@ -17,7 +17,6 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import splinesdf as ss
 from splinesdf.cli import main
@@ -239,12 +238,15 @@ Run = Callable[..., tuple[str, str]]
 
 
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
     def run(file: str, *arguments: str) -> tuple[str, str]:
         monkeypatch.chdir(tmp_path)
-        result = CliRunner().invoke(main, ["offset", str(DATA / file), *arguments])
-        assert result.exit_code == 0, result.output
-        return result.stdout, result.stderr
+        monkeypatch.setattr(sys, "argv", ["splinesdf", "offset", str(DATA / file), *arguments])
+        with pytest.raises(SystemExit) as caught:
+            main()
+        out, err = capsys.readouterr()
+        assert not caught.value.code, out + err
+        return out, err
 
     return run
 

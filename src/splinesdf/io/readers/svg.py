@@ -2,7 +2,7 @@
 
     text ──XML──> elements ──walk down: transform, fill, visibility──> outlines ──> one shape
 
-What a shape cannot hold (texts, images, ...) is counted and named in the shape's notes.
+What a shape cannot hold (texts, images, open paths, ...) is counted and named in the shape's notes.
 """
 
 from __future__ import annotations
@@ -20,10 +20,12 @@ import numpy as np
 
 from splinesdf._arrays import Floats
 from splinesdf.curves.interpolate import compile_arc
+from splinesdf.curves.joining import are_open, joined
 from splinesdf.curves.shape import Shape
 from splinesdf.curves.svg_path import closing_piece, parse_numbers, parse_path
 from splinesdf.errors import InputError
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
+from splinesdf.io.readers.svg_units import unit_note
 
 _NAMESPACE = "{http://www.w3.org/2000/svg}"
 # Entities can be made to expand without end, and a drawing needs none.
@@ -67,6 +69,7 @@ class _Outline(NamedTuple):
     tag: str
     loops: list[list[Floats]]
     context: _Context
+    label: str
 
 
 def svg_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
@@ -96,7 +99,13 @@ def svg_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
             "expected a path, rect, circle, ellipse, polygon or polyline that encloses something, "
             f"got none{f' ({notes[0]})' if notes else ''}"
         )
+    about_open = None
+    if not close:
+        painted, about_open = _without_open(painted)
     loops = [loop for outline in painted for loop in outline.loops]
+    if close:
+        loops, about_open = _joined(loops)
+    notes += tuple(note for note in (about_open, unit_note(root)) if note)
     rule = fill if fill is not None else _fill_rule(painted)
     return Shape.from_pieces(loops, fill=rule, close=close, y_down=True, name=stem, notes=notes)
 
@@ -157,7 +166,7 @@ def _outlines(
             else:
                 loops = _loops(element, tag, context)
                 if loops:
-                    yield _Outline(tag, loops, context)
+                    yield _Outline(tag, loops, context, _label(element, tag))
                 else:
                     left_out[f"{tag} without area"] += 1
 
@@ -168,9 +177,57 @@ def _where(element: ElementTree.Element, tag: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        name = element.get("id")
-        label = f"<{tag} id={name[:40]!r}>" if name else f"<{tag}>"
-        raise type(error)(f"{label}: {error}") from error
+        raise type(error)(f"{_label(element, tag)}: {error}") from error
+
+
+def _label(element: ElementTree.Element, tag: str) -> str:
+    name = element.get("id")
+    return f"<{tag} id={name[:40]!r}>" if name else f"<{tag}>"
+
+
+def _without_open(outlines: list[_Outline]) -> tuple[list[_Outline], str | None]:
+    """The outlines without the paths that are open, and a line about those.
+
+    All as they are if nothing else is left: then it is an error that there are open ones.
+    """
+    kept = outlines
+    left: list[tuple[str, list[Floats]]] = []
+    # Again, as what is closed within printed digits may be open beside the smaller rest.
+    while True:
+        flags = are_open([loop for o in kept for loop in o.loops])
+        if True not in flags:
+            break
+        if False not in flags:
+            return outlines, None
+        flag = iter(flags)
+        marked = [(o, [(loop, next(flag)) for loop in o.loops]) for o in kept]
+        left += [(o.label, loop) for o, loops in marked for loop, is_open in loops if is_open]
+        kept = [
+            o._replace(loops=[loop for loop, is_open in loops if not is_open])
+            for o, loops in marked
+        ]
+    if not left:
+        return outlines, None
+    label, loop = left[0]
+    (x, y), (x_end, y_end) = loop[0][0], loop[-1][-1]
+    what = f"{len(left)} open paths, the first" if len(left) > 1 else "1 open path,"
+    return [o for o in kept if o.loops], (
+        f"left out: {what} {label} from ({x:.6g}, {y:.6g}) to ({x_end:.6g}, {y_end:.6g}): "
+        "close=True (--close) closes such"
+    )
+
+
+def _joined(loops: list[list[Floats]]) -> tuple[list[list[Floats]], str | None]:
+    """The loops, open ones joined end to end, and a line that says how many were."""
+    chains, count = joined(loops)
+    if not count:
+        return loops, None
+    made = len(chains) - (len(loops) - count)
+    left = are_open(chains).count(True)
+    return chains, (
+        f"joined end to end: {count} open paths, to {made}"
+        + (f"; closed by straight pieces: {left}" if left else "")
+    )
 
 
 def _properties(element: ElementTree.Element) -> dict[str, str]:
