@@ -60,16 +60,12 @@ def test_what_is_open_after_that_is_closed_by_a_straight_piece(svg: Svg) -> None
     body = stroked("M4 3V0", "M0 0H4", "M9 9H8V7", "M20 0h1v1h-1z")
     shape = svg(body, close=True)
     assert_allclose(np.abs(areas(shape)), [6.0, 1.0, 1.0], rtol=ROUNDING)
-    assert shape.notes == (
-        "joined end to end: 2 open paths, to 1; closed by straight pieces: 2",
-    )
+    assert shape.notes == ("joined end to end: 2 open paths, to 1; closed by straight pieces: 2",)
 
 
 def test_ends_farther_apart_than_printed_digits_are_not_joined(svg: Svg) -> None:
-    shape = svg(stroked("M0 0H4", "M4.00001 0V3", "M4 3H0V0.00001"), close=True)
-    assert shape.notes == (
-        "joined end to end: 2 open paths, to 1; closed by straight pieces: 2",
-    )
+    shape = svg(stroked("M0 0H4", "M4.00001 0L4 3", "M4 3H0V0.00001"), close=True)
+    assert shape.notes == ("joined end to end: 2 open paths, to 1; closed by straight pieces: 2",)
 
 
 def test_nothing_to_join_is_no_note(svg: Svg) -> None:
@@ -81,9 +77,7 @@ def test_spokes_of_a_wheel_are_joined_two_by_two(svg: Svg) -> None:
     rim = [(3.0 * math.cos(k), 3.0 * math.sin(k)) for k in range(6)]
     shape = svg(stroked(*(f"M0 0L{x!r} {y!r}" for x, y in rim)), close=True)
     assert shape.loop_count == 3
-    assert shape.notes == (
-        "joined end to end: 6 open paths, to 3; closed by straight pieces: 3",
-    )
+    assert shape.notes == ("joined end to end: 6 open paths, to 3; closed by straight pieces: 3",)
 
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -1,6 +1,6 @@
 """Open paths among closed ones: told apart, or joined end to end.
 
-    open paths ──ends in order──> pairs of ends that meet ──walk from end to end──> chains
+open paths ──ends in order──> pairs of ends that meet ──walk from end to end──> chains
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -90,7 +91,7 @@ def _pairs(points: Floats, gap: float) -> list[int]:
     partner = [-1] * len(points)
     # Equal to the bit: neighbors in order, the earlier ones first.
     order = np.lexsort((points[:, 1], points[:, 0])).tolist()
-    for one, other in zip(order, order[1:], strict=False):
+    for one, other in pairwise(order):
         if partner[one] < 0 and (points[one] == points[other]).all():
             partner[one], partner[other] = other, one
     # The rest by squares of one gap: what meets is in the same or in one of the eight around.
@@ -103,7 +104,9 @@ def _pairs(points: Floats, gap: float) -> list[int]:
     near = []
     for (i, j), here in at.items():
         # Each pair of squares once.
-        around = [at.get(key, []) for key in ((i + 1, j - 1), (i + 1, j), (i + 1, j + 1), (i, j + 1))]
+        around = [
+            at.get(key, []) for key in ((i + 1, j - 1), (i + 1, j), (i + 1, j + 1), (i, j + 1))
+        ]
         for place, one in enumerate(here[:_MOST_NEAR]):
             others = here[place + 1 : _MOST_NEAR]
             others = others + [other for square in around for other in square[:_MOST_NEAR]]

@@ -135,7 +135,9 @@ def measure_file(
         if not found <= worst[0]:
             worst, where = (found, level), point
     checked = [
-        check_sides(shape, level, lines.get(level, []), tolerance, _turn(as_path(path), level, flip))
+        check_sides(
+            shape, level, lines.get(level, []), tolerance, _turn(as_path(path), level, flip)
+        )
         for level in dict.fromkeys([*map(float, distances), *lines])
     ]
     return Worst(

@@ -20,10 +20,10 @@ import numpy as np
 
 from splinesdf._arrays import Floats
 from splinesdf.curves.interpolate import compile_arc
-from splinesdf.curves.joining import are_open, joined
 from splinesdf.curves.shape import Shape
 from splinesdf.curves.svg_path import closing_piece, parse_numbers, parse_path
 from splinesdf.errors import InputError
+from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
 from splinesdf.io.readers.svg_units import unit_note
 
@@ -101,10 +101,11 @@ def svg_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
         )
     about_open = None
     if not close:
-        painted, about_open = _without_open(painted)
+        kept, about_open = without_open([(o.label, o.loops) for o in painted])
+        painted = [o._replace(loops=k) for o, k in zip(painted, kept, strict=True) if k]
     loops = [loop for outline in painted for loop in outline.loops]
     if close:
-        loops, about_open = _joined(loops)
+        loops, about_open = joined_loops(loops)
     notes += tuple(note for note in (about_open, unit_note(root)) if note)
     rule = fill if fill is not None else _fill_rule(painted)
     return Shape.from_pieces(loops, fill=rule, close=close, y_down=True, name=stem, notes=notes)
@@ -183,51 +184,6 @@ def _where(element: ElementTree.Element, tag: str) -> Iterator[None]:
 def _label(element: ElementTree.Element, tag: str) -> str:
     name = element.get("id")
     return f"<{tag} id={name[:40]!r}>" if name else f"<{tag}>"
-
-
-def _without_open(outlines: list[_Outline]) -> tuple[list[_Outline], str | None]:
-    """The outlines without the paths that are open, and a line about those.
-
-    All as they are if nothing else is left: then it is an error that there are open ones.
-    """
-    kept = outlines
-    left: list[tuple[str, list[Floats]]] = []
-    # Again, as what is closed within printed digits may be open beside the smaller rest.
-    while True:
-        flags = are_open([loop for o in kept for loop in o.loops])
-        if True not in flags:
-            break
-        if False not in flags:
-            return outlines, None
-        flag = iter(flags)
-        marked = [(o, [(loop, next(flag)) for loop in o.loops]) for o in kept]
-        left += [(o.label, loop) for o, loops in marked for loop, is_open in loops if is_open]
-        kept = [
-            o._replace(loops=[loop for loop, is_open in loops if not is_open])
-            for o, loops in marked
-        ]
-    if not left:
-        return outlines, None
-    label, loop = left[0]
-    (x, y), (x_end, y_end) = loop[0][0], loop[-1][-1]
-    what = f"{len(left)} open paths, the first" if len(left) > 1 else "1 open path,"
-    return [o for o in kept if o.loops], (
-        f"left out: {what} {label} from ({x:.6g}, {y:.6g}) to ({x_end:.6g}, {y_end:.6g}): "
-        "close=True (--close) closes such"
-    )
-
-
-def _joined(loops: list[list[Floats]]) -> tuple[list[list[Floats]], str | None]:
-    """The loops, open ones joined end to end, and a line that says how many were."""
-    chains, count = joined(loops)
-    if not count:
-        return loops, None
-    made = len(chains) - (len(loops) - count)
-    left = are_open(chains).count(True)
-    return chains, (
-        f"joined end to end: {count} open paths, to {made}"
-        + (f"; closed by straight pieces: {left}" if left else "")
-    )
 
 
 def _properties(element: ElementTree.Element) -> dict[str, str]:
