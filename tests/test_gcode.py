@@ -214,6 +214,43 @@ def test_the_nearest_contour_is_next(tmp_path: Path) -> None:
     assert starts == [31 + 0j, 21 + 0j, 11 + 0j, 1 + 0j]
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_what_lies_in_a_contour_is_cut_before_it(tmp_path: Path, seed: int) -> None:
+    """Rings in rings beside each other and all in one, given in any order; judged by radii.
+
+    Of those in which nothing is left the nearest is next, so the ways in between are greedy.
+    """
+    random = np.random.default_rng(seed)
+    disks = [(complex(50.0, 0.0), 90.0, 1.0)]
+    for column in range(3):
+        center = complex(50.0 * column, random.uniform(-5.0, 5.0))
+        disks += [(center, radius, (-1.0) ** radius) for radius in (2.0, 5.0, 9.0, 14.0)]
+        # Two in the largest but one, beside those in the middle.
+        disks += [(center + side * 7.0, 1.0, 1.0) for side in (-1, 1)]
+    random.shuffle(disks)
+    y_down = bool(seed % 2)
+    rings = [
+        replace(circle(radius, (at.real, -at.imag if y_down else at.imag), d), y_down=y_down)
+        for at, radius, d in disks
+    ]
+    start = (random.uniform(-100.0, 100.0), random.uniform(-100.0, 100.0))
+    cuts = program(tmp_path, rings, milling=ss.Milling(start=start)).cuts
+    assert len(cuts) == len(disks)
+    left, here = dict(enumerate(disks)), complex(*start)
+    for cut in cuts:
+        start_of = cut.points[0]
+        ready = {
+            k: abs(abs(here - at) - radius)
+            for k, (at, radius, _) in left.items()
+            if not any(abs(at - a) + r < radius for a, r, _ in left.values())
+        }
+        chosen = min(left, key=lambda k: abs(abs(start_of - left[k][0]) - left[k][1]))
+        assert chosen in ready
+        assert abs(start_of - here) <= min(ready.values()) + 1e-3
+        del left[chosen]
+        here = cut.points[-1]
+
+
 @examples(15)
 @given(x=st.floats(-10.0, 10.0), y=st.floats(-10.0, 10.0), which=st.sampled_from("csm"))
 def test_a_contour_is_entered_at_its_nearest_point(x: float, y: float, which: str) -> None:

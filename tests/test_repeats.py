@@ -32,7 +32,7 @@ COPIES = {
 def same_region(shape: ss.Shape, region: shapely.Polygon) -> None:
     """The shape fills the region, by the area of its boundary and the side of many points."""
     grid = np.stack(np.meshgrid(np.linspace(-1, 11, 61), np.linspace(-1, 9, 53)), -1).reshape(-1, 2)
-    grid = grid + [0.0123, 0.0456]
+    grid = [*grid, 0.0123, 0.0456]
     inside = ss.signed_distance(shape, grid) < 0.0
     assert np.array_equal(inside, shapely.contains_xy(region, grid[:, 0], grid[:, 1]))
     contours = ss.offset(shape, 0.0, tolerance=1e-9)
@@ -133,7 +133,7 @@ def test_every_way_in(tmp_path: Path) -> None:
             drawing(
                 whole,
                 f'<g transform="translate(-7 3)"><path fill-rule="evenodd" '
-                f'd="{d(HOLE[::-1] + [7, -3], OUTER + [7, -3])}"/></g>',
+                f'd="{d([*HOLE[::-1], 7, -3], [*OUTER, 7, -3])}"/></g>',
             ),
         ),
     }
@@ -163,7 +163,7 @@ def test_what_one_element_fills_of_another_stays_filled(tmp_path: Path) -> None:
 def test_a_circle_started_elsewhere_is_the_same(second: str, tmp_path: Path) -> None:
     hole = '<path fill="none" stroke="red" d="{}"/>'
     text = drawing(
-        f'<rect width="10" height="8" fill="none" stroke="red"/>',
+        '<rect width="10" height="8" fill="none" stroke="red"/>',
         '<circle cx="5" cy="3" r="3" fill="none" stroke="red"/>',
         hole.format(second),
     )

@@ -26,7 +26,9 @@ Command = Callable[..., None]
 def shape_options(command: Command) -> Command:
     """The shape and how it is read."""
     for option in (
-        click.option("--close", is_flag=True, help="Close open contours by a straight piece."),
+        click.option(
+            "--close", is_flag=True, help="Join open paths end to end, close the rest straight."
+        ),
         click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule."),
         click.argument("shape"),
     ):

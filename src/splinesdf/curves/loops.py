@@ -17,7 +17,7 @@ from splinesdf.errors import InputError, OpenContourError
 _ROUNDING_GAP = 1e-13
 # A gap up to this share of the size is a drawing program's printed digits: it is bridged by a
 # straight piece, so the curve itself stays as drawn. Anything wider is an open contour.
-_PRINTED_GAP = 1e-6
+PRINTED_GAP = 1e-6
 # A curve whose control points are within this share of the largest coordinate of the line through
 # its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
 # curves that run to and fro along a line keep arcs that only rounding gives a side.
@@ -44,9 +44,29 @@ def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[l
         the coordinates, or nothing is left.
     """
     arrays = [[_as_control(piece) for piece in loop] for loop in loops]
-    if not any(arrays):
+    size, largest = extent(arrays)
+    closed = []
+    for number, loop in enumerate(arrays):
+        pieces = _closed_loop(loop, number, size=size, largest=largest, close=close)
+        if pieces:
+            closed.append(pieces)
+    if not closed:
+        raise InputError("expected a curve that encloses something, got only points")
+    return closed
+
+
+def extent(loops: Sequence[Sequence[Floats]]) -> tuple[float, float]:
+    """The larger side of the box of all control points, and their largest coordinate.
+
+    Raises
+    ------
+    InputError
+        If there is none, one is not finite or above 1e60, or the size is below 1e-60 or below 1e-9
+        of the coordinates.
+    """
+    if not any(loops):
         raise InputError("expected at least one closed curve, got none")
-    every = np.concatenate([piece for loop in arrays for piece in loop])
+    every = np.concatenate([piece for loop in loops for piece in loop])
     if not np.isfinite(every).all():
         raise InputError("expected finite coordinates, got NaN or infinity")
     largest = largest_coordinate(every)
@@ -62,14 +82,7 @@ def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[l
             f"the shape's size {size:.3g} is lost beside its coordinates of {largest:.3g}: "
             f"move it nearer to the origin"
         )
-    closed = []
-    for number, loop in enumerate(arrays):
-        pieces = _closed_loop(loop, number, size=size, largest=largest, close=close)
-        if pieces:
-            closed.append(pieces)
-    if not closed:
-        raise InputError("expected a curve that encloses something, got only points")
-    return closed
+    return size, largest
 
 
 def _as_control(piece: ArrayLike) -> Floats:
@@ -116,7 +129,7 @@ def _closed_loop(
         gap = math.dist(piece[-1], following[0])
         if gap <= _ROUNDING_GAP * largest:
             following[0] = piece[-1]
-        elif gap <= _PRINTED_GAP * size or (last and close):
+        elif gap <= PRINTED_GAP * size or (last and close):
             result.append(np.array([piece[-1], following[0]]))
         else:
             end, start = piece[-1], following[0]

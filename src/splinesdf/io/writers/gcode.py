@@ -1,7 +1,10 @@
 """Contours as G-code: straight moves (G1) and circular ones (G2, G3) of a milling machine.
 
     contours ─y up, lines and circular arcs, turned to the direction asked─→ paths
-             ─always the nearest one next, entered at its nearest point─→ moves
+             ─the nearest one next of those in which nothing is left to cut, entered at its
+              nearest point─→ moves
+
+What is cut out of the sheet may move: so holes come before the outline around them.
 
 The words are those that LinuxCNC, GRBL, Fanuc and their kin share: G17 (the XY plane), G20 or G21
 (inch, mm), G40 (no radius compensation), G90 (absolute ends), G91.1 (I and J from the arc's
@@ -16,10 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from splinesdf._arrays import Bools
 from splinesdf.biarcs import arc_elements
 from splinesdf.conics import Element, Kind
 from splinesdf.contour import Contour, upright
 from splinesdf.io.writers.options import Milling, Options
+from splinesdf.nesting import smallest_around
 
 # The last digit is a hundredth to a thousandth of the tolerance, and never coarser than this many
 # decimals: controls refuse arcs whose two radii differ by 0.005 mm or 0.0005 inch.
@@ -75,6 +80,8 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(options.tolerance)) + _DECIMALS_BEYOND)
     decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
     paths = [_path(c, _SHARE * options.tolerance, milling.direction) for c in contours]
+    cut = [k for k, path in enumerate(paths) if path.pieces]
+    around = smallest_around([upright(contours[k]) for k in cut])
     safe, plunge = f"G0 Z{_plain(milling.safe_height)}", f"G1 Z{_plain(-milling.depth)}"
     if milling.feed is not None:
         plunge += f" F{_plain(milling.feed)}"
@@ -85,7 +92,8 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
         f"G17 {'G21' if units == 'mm' else 'G20'} G40 G90 G91.1 G94",
         safe,
     ]
-    for path in _ordered(paths, complex(*milling.start), _SNAP * 10.0**-decimals):
+    snap = _SNAP * 10.0**-decimals
+    for path in _ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
         start = path.pieces[0].start
         lines += [f"(distance {float(path.distance) + 0.0!r})", f"G0 {_xy(start, decimals)}"]
         lines += [plunge, *_moves(path, decimals), safe]
@@ -107,14 +115,22 @@ def _path(contour: Contour, tolerance: float, direction: str) -> _Path:
     return _Path(contour.distance, contour.closed, pieces)
 
 
-def _ordered(paths: Sequence[_Path], here: complex, snap: float) -> Iterator[_Path]:
-    """The paths, always the one next that is nearest to where the tool is then."""
-    paths = [path for path in paths if path.pieces]
+def _ordered(
+    paths: Sequence[_Path], around: Sequence[int], here: complex, snap: float
+) -> Iterator[_Path]:
+    """The paths, always the one next that is nearest to where the tool is then.
+
+    Only those in which nothing is left are asked; ``around`` is `smallest_around`'s.
+    """
     near = _Near(paths)
+    left_inside = np.bincount([k for k in around if k >= 0], minlength=len(paths))
     for _ in paths:
-        row, share = near.nearest(here)
-        path, at, length = paths[near.path[row]], int(near.piece[row]), float(near.lengths[row])
-        near = near.without(int(near.path[row]))
+        row, share = near.nearest(here, left_inside == 0)
+        chosen = int(near.path[row])
+        path, at, length = paths[chosen], int(near.piece[row]), float(near.lengths[row])
+        near = near.without(chosen)
+        if around[chosen] >= 0:
+            left_inside[around[chosen]] -= 1
         if path.closed:
             share = 0.0 if share * length < snap else share
             share = 1.0 if (1.0 - share) * length < snap else share
@@ -152,8 +168,8 @@ class _Near:
         vars(result).update({name: values[kept] for name, values in vars(self).items()})
         return result
 
-    def nearest(self, here: complex) -> tuple[int, float]:
-        """In which row, at which share of the piece, the nearest point is."""
+    def nearest(self, here: complex, allowed: Bools) -> tuple[int, float]:
+        """In which row, at which share of the piece, the nearest point of an allowed path is."""
         squares = np.maximum(np.abs(self.way) ** 2, np.finfo(np.float64).tiny)
         share = ((here - self.start) * self.way.conjugate()).real / squares
         share = np.clip(share, 0.0, 1.0)
@@ -167,7 +183,7 @@ class _Near:
         angle = np.where(angle < -0.5 * gap, angle + 2.0 * np.pi, angle)
         share[on] = np.clip(angle / np.abs(turns), 0.0, 1.0)
         points[on] = self.center[on] + spokes * np.exp(1j * share[on] * turns)
-        row = int(np.argmin(np.abs(points - here)))
+        row = int(np.argmin(np.where(allowed[self.path], np.abs(points - here), np.inf)))
         return row, float(share[row])
 
 

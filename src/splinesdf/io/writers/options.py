@@ -29,7 +29,8 @@ class Milling:
         How deep to cut below Z = 0. At 0, the default, the tool draws on the surface.
     start : (float, float)
         Where the tool comes from, in the file's coordinates: the next contour is always the
-        nearest one, entered at its nearest point.
+        nearest one in which nothing is left to cut, so that holes come before the outline around
+        them, entered at its nearest point.
     direction : {"climb", "conventional"}
         For a spindle that turns clockwise, seen from above. Climb: what stays is on the right of
         the tool (G41's side), so an outer contour around a part is followed clockwise, a pocket's
