@@ -1,4 +1,4 @@
-"""A contour that is drawn twice counts once, unless the fill rule is asked for; judged by shapely."""
+"""A contour drawn twice counts once, unless the fill rule is asked for; judged by shapely."""
 
 from __future__ import annotations
 

@@ -70,6 +70,18 @@ def joints_at(shape: Shape, distance: float) -> Joints:
     return shape.joints_outside if distance > 0.0 else shape.joints
 
 
+def loop_sizes(shape: Shape, distance: float) -> Floats:
+    """The larger side of the loop of each arclet: what is small beside it, not in the drawing."""
+    joints, boundary = joints_at(shape, distance), shape.boundary
+    low = np.minimum(boundary.start, boundary.end)[joints.order]
+    high = np.maximum(boundary.start, boundary.end)[joints.order]
+    first = joints.loops[:-1]
+    size = np.maximum.reduceat(high, first) - np.minimum.reduceat(low, first)
+    result = np.empty(len(low))
+    result[joints.order] = np.repeat(size.max(axis=1), np.diff(joints.loops))
+    return result
+
+
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
     """Point, tangent of the shape, speed and curvature of parallels, (n, 6)."""
     from splinesdf.kernels.parallels import parallel_points  # Numba loads only when it is used
