@@ -124,8 +124,14 @@ def test_options_reach_the_program(run: Run, tmp_path: Path) -> None:
     for words in ("G20", "G0 Z7", "G1 Z-2 F250", "conventional milling"):
         assert words in text
     x, y = map(float, re.search(r"G0 X(\S+) Y(\S+)", text).groups())
-    # The corner of the pocket, mirrored, that is nearest to the start.
-    assert (x, y) == pytest.approx((39.0, -29.0), abs=0.02)
+    # The innermost comes first: of the island less 1, mirrored, the point nearest to the start.
+    t = np.linspace(0.0, 2.0 * np.pi, 100_000)
+    along = np.stack([-5.0 * np.sin(t), 3.0 * np.cos(t)], axis=1)
+    inward = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+    inset = np.stack([19.0 + 5.0 * np.cos(t), -15.0 + 3.0 * np.sin(t)], axis=1) + inward
+    nearest = np.hypot(*(inset - [40.0, -30.0]).T).min()
+    assert np.hypot(*(inset - [x, y]).T).min() <= 0.01 + 1e-4
+    assert np.hypot(x - 40.0, y + 30.0) == pytest.approx(nearest, abs=0.01)
 
 
 def test_arcs_reach_the_drawing(run: Run, tmp_path: Path) -> None:
