@@ -231,6 +231,10 @@ def test_the_error_in_a_band_is_below_its_bound(
     moved = asked[near] + (onto - exact)[near, None] * ways
     exact = ss.signed_distance(shape, moved)
     there = (exact >= band[0] - 1e-12) & (exact <= band[1] + 1e-12)
+    if band[1] < -0.0196:  # deeper than the inscribed circle of the last one
+        assert not there.any()
+        assert result.error == 0.0
+        return
     assert there.sum() > 1000
     assert np.abs(result.spline(moved[there]) - exact[there]).max() <= result.bound
 

@@ -43,8 +43,8 @@ _OVERLAP = 1e-3
 _BEYOND = 1e-3
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
 _MOVED = 1e-3
-# A loop that is smaller than this share of the tolerance, or of the boundary's loop, is left out: it
-# may be what rounding leaves next to where parallels cross at a small angle.
+# A loop that is smaller than this share of the tolerance, or of the boundary's loop, is left out:
+# it may be what rounding leaves next to where parallels cross at a small angle.
 _LEAST, _SPECK = 1e-3, 1e-9
 
 
