@@ -18,9 +18,7 @@ def triangle(*corners: tuple[float, float]) -> ss.Shape:
 
 
 EXAMPLES = {
-    "square": Case(
-        "square", triangle((0, 0), (1, 0), (1, 1), (0, 1)), [(0.0, 0.03)], 0.003
-    ),
+    "square": Case("square", triangle((0, 0), (1, 0), (1, 1), (0, 1)), [(0.0, 0.03)], 0.003),
     "level": Case("level", triangle((0.7, 0.5), (0.7, 0.2), (0.6, 0.8)), [(0.012, 0.012)], 0.0018),
     "two levels": Case(
         "two levels",

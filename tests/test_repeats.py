@@ -1,4 +1,4 @@
-"""A contour that is drawn twice counts once, unless the fill rule is asked for; judged by shapely."""
+"""A contour that is drawn twice counts once, but for a rule that is asked for; by shapely."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ HOLE = np.array([[2.0, 2.0], [5.0, 2.5], [4.0, 6.0]])
 # More corners on the same sides.
 CUT = np.array([[2.0, 2.0], [3.5, 2.25], [5.0, 2.5], [4.5, 4.25], [4.0, 6.0]])
 OTHER = np.array([[6.0, 2.0], [8.0, 2.0], [8.0, 4.0]])
+MOVED = np.array([7.0, -3.0])
 PLATE = shapely.Polygon(OUTER, [HOLE])
 TWO_HOLES = shapely.Polygon(OUTER, [HOLE, OTHER])
 COPIES = {
@@ -32,7 +33,7 @@ COPIES = {
 def same_region(shape: ss.Shape, region: shapely.Polygon) -> None:
     """The shape fills the region, by the area of its boundary and the side of many points."""
     grid = np.stack(np.meshgrid(np.linspace(-1, 11, 61), np.linspace(-1, 9, 53)), -1).reshape(-1, 2)
-    grid = grid + [0.0123, 0.0456]
+    grid += np.array([0.0123, 0.0456])
     inside = ss.signed_distance(shape, grid) < 0.0
     assert np.array_equal(inside, shapely.contains_xy(region, grid[:, 0], grid[:, 1]))
     contours = ss.offset(shape, 0.0, tolerance=1e-9)
@@ -41,7 +42,9 @@ def same_region(shape: ss.Shape, region: shapely.Polygon) -> None:
 
 
 def d(*rings: np.ndarray) -> str:
-    return "".join("M" + "L".join(f"{float(x)!r} {float(y)!r}" for x, y in ring) + "Z" for ring in rings)
+    return "".join(
+        "M" + "L".join(f"{float(x)!r} {float(y)!r}" for x, y in ring) + "Z" for ring in rings
+    )
 
 
 def drawing(*elements: str) -> str:
@@ -84,9 +87,7 @@ def test_an_outer_contour_drawn_again_is_one(name: str, times: int, tmp_path: Pa
     }.get(name, OUTER + np.max(shift))
     for rule in ("evenodd", "nonzero"):
         rings = [OUTER, HOLE[::-1], *[again] * (times - 1)]
-        shape = read(
-            tmp_path, "plate.svg", drawing(f'<path fill-rule="{rule}" d="{d(*rings)}"/>')
-        )
+        shape = read(tmp_path, "plate.svg", drawing(f'<path fill-rule="{rule}" d="{d(*rings)}"/>'))
         assert shape.loop_count == 2
         assert f"counted once: {times - 1} (" in shape.notes[0]
         same_region(shape, PLATE)
@@ -133,7 +134,7 @@ def test_every_way_in(tmp_path: Path) -> None:
             drawing(
                 whole,
                 f'<g transform="translate(-7 3)"><path fill-rule="evenodd" '
-                f'd="{d(HOLE[::-1] + [7, -3], OUTER + [7, -3])}"/></g>',
+                f'd="{d(HOLE[::-1] + MOVED, OUTER + MOVED)}"/></g>',
             ),
         ),
     }
@@ -157,11 +158,13 @@ def test_what_one_element_fills_of_another_stays_filled(tmp_path: Path) -> None:
         same_region(shape, shapely.Polygon(OUTER))
 
 
-@pytest.mark.parametrize("second", ["M8 3A3 3 0 0 1 2 3A3 3 0 0 1 8 3Z", "M5 6A3 3 0 0 0 5 0A3 3 0 1 0 5 6Z"])
+@pytest.mark.parametrize(
+    "second", ["M8 3A3 3 0 0 1 2 3A3 3 0 0 1 8 3Z", "M5 6A3 3 0 0 0 5 0A3 3 0 1 0 5 6Z"]
+)
 def test_a_circle_started_elsewhere_is_the_same(second: str, tmp_path: Path) -> None:
     hole = '<path fill="none" stroke="red" d="{}"/>'
     text = drawing(
-        f'<rect width="10" height="8" fill="none" stroke="red"/>',
+        '<rect width="10" height="8" fill="none" stroke="red"/>',
         '<circle cx="5" cy="3" r="3" fill="none" stroke="red"/>',
         hole.format(second),
     )

@@ -25,7 +25,11 @@ def shape_options(command: Command) -> Command:
     """The shape and how it is read."""
     for option in (
         click.option("--close", is_flag=True, help="Close open contours by a straight piece."),
-        click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule."),
+        click.option(
+            "--fill",
+            type=click.Choice(["nonzero", "evenodd"]),
+            help="The fill rule; then what is drawn twice counts twice.",
+        ),
         click.argument("shape"),
     ):
         command = option(command)

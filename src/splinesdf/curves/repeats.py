@@ -154,7 +154,9 @@ def same_curve(one: Sequence[Floats], other: Sequence[Floats], near: float) -> b
     if len(one) * len(other) > _MOST_PAIRS:
         return False
     degree = max(len(piece) for loop in (one, other) for piece in loop) - 1
-    first, second = (np.stack([_elevated(piece, degree) for piece in loop]) for loop in (one, other))
+    first, second = (
+        np.stack([_elevated(piece, degree) for piece in loop]) for loop in (one, other)
+    )
     return _lies_on(first, second, near) and _lies_on(second, first, near)
 
 

@@ -26,14 +26,16 @@ def read(path: str | os.PathLike[str], *, fill: str | None = None, close: bool =
         ``.svg`` (paths and basic shapes, in user units, y pointing down), ``.json`` (formulas),
         ``.csv`` or ``.dat`` (the corners of polygons, a blank line between two).
     fill : {"nonzero", "evenodd"}, optional
-        Default: what the file says; else nonzero, or evenodd for a drawing of mere outlines.
+        Default: what the file says; else nonzero, or evenodd for a drawing of mere outlines. And
+        unless it is given, a contour that is drawn several times counts once.
     close : bool
         Close open contours by a straight piece instead of refusing them.
 
     Returns
     -------
     Shape
-        Its ``notes`` name what the file holds beside it, such as texts or images.
+        Its ``notes`` name what the file holds beside it, such as texts or images, and what is
+        drawn again.
 
     Raises
     ------
