@@ -31,7 +31,7 @@ pytest_collect_file = Sybil(
 
 # The kernel files that call others, and which.
 _CALLED = {
-    "enclosure": ("chains", "feet"),
+    "enclosure": ("bands", "chains", "feet"),
     "chains": ("feet",),
     "gaps": ("nearest", "parallels"),
     "trim": ("gaps", "nearest", "parallels"),

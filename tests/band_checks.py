@@ -13,7 +13,7 @@ from tests.glyphs import CHARACTERS, glyphs
 # Rounding of exact distances and of spline values, as a share of the largest coordinate.
 ROUNDING = 1e-13
 # Points in each leaf to start from, and around each of the worst, in smaller and smaller disks.
-POINTS, WORST, AROUND, ROUNDS = 16, 400, 16, 14
+POINTS, WORST, AROUND, ROUNDS = 16, 400, 20, 18
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def found_error(case: Case, result: ss.FitResult, seed: int = 5) -> float:
         disk = radius[leaf][:, None] * random.normal(size=(AROUND, len(best), 2))
         points = np.concatenate([best, (best + disk).reshape(-1, 2)])
         leaf = np.tile(leaf, AROUND + 1)
-        radius *= 0.5
+        radius *= 0.6
     return worst
 
 

@@ -1,4 +1,4 @@
-"""A contour drawn twice counts once, unless the fill rule is asked for; judged by shapely."""
+"""A contour that is drawn twice counts once, but for a rule that is asked for; by shapely."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ HOLE = np.array([[2.0, 2.0], [5.0, 2.5], [4.0, 6.0]])
 # More corners on the same sides.
 CUT = np.array([[2.0, 2.0], [3.5, 2.25], [5.0, 2.5], [4.5, 4.25], [4.0, 6.0]])
 OTHER = np.array([[6.0, 2.0], [8.0, 2.0], [8.0, 4.0]])
+MOVED = np.array([7.0, -3.0])
 PLATE = shapely.Polygon(OUTER, [HOLE])
 TWO_HOLES = shapely.Polygon(OUTER, [HOLE, OTHER])
 COPIES = {
@@ -32,7 +33,7 @@ COPIES = {
 def same_region(shape: ss.Shape, region: shapely.Polygon) -> None:
     """The shape fills the region, by the area of its boundary and the side of many points."""
     grid = np.stack(np.meshgrid(np.linspace(-1, 11, 61), np.linspace(-1, 9, 53)), -1).reshape(-1, 2)
-    grid = [*grid, 0.0123, 0.0456]
+    grid += np.array([0.0123, 0.0456])
     inside = ss.signed_distance(shape, grid) < 0.0
     assert np.array_equal(inside, shapely.contains_xy(region, grid[:, 0], grid[:, 1]))
     contours = ss.offset(shape, 0.0, tolerance=1e-9)
@@ -133,7 +134,7 @@ def test_every_way_in(tmp_path: Path) -> None:
             drawing(
                 whole,
                 f'<g transform="translate(-7 3)"><path fill-rule="evenodd" '
-                f'd="{d([*HOLE[::-1], 7, -3], [*OUTER, 7, -3])}"/></g>',
+                f'd="{d(HOLE[::-1] + MOVED, OUTER + MOVED)}"/></g>',
             ),
         ),
     }

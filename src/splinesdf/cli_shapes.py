@@ -29,7 +29,11 @@ def shape_options(command: Command) -> Command:
         click.option(
             "--close", is_flag=True, help="Join open paths end to end, close the rest straight."
         ),
-        click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule."),
+        click.option(
+            "--fill",
+            type=click.Choice(["nonzero", "evenodd"]),
+            help="The fill rule; then what is drawn twice counts twice.",
+        ),
         click.argument("shape"),
     ):
         command = option(command)

@@ -35,7 +35,9 @@ _PATIENCE = 3
 _ROUNDS, _SAMPLED_ROUNDS = 12, 1
 # Parts of an eighth that may be looked at before it is left as it is, and to know the largest
 # error of all. More: slower where no proof is to be had; fewer: good cells are halved in vain.
-_GLANCE, _EFFORT = 100, 20_000
+# In bands less: at a thin one triangles must be small all along it, and ten times the effort gains
+# a digit at most.
+_GLANCE, _EFFORT, _EFFORT_IN_BANDS = 100, 20_000, 2_000
 # Cells whose error is looked at together when the largest of all is sought. More: some in vain;
 # fewer: more rounds.
 _TOGETHER = 64
@@ -271,7 +273,8 @@ def largest_error(
         known = cell_errors(shape, spline, np.arange(len(center)), center, bands, wanted)
     low, high = (np.where(known.counts, values, 0.0) for values in known[:2])
     # Where nothing is known from below, a glance first: most cells need no more then.
-    effort = _EFFORT if low.any() else _GLANCE
+    most = _EFFORT_IN_BANDS if len(bands) else _EFFORT
+    effort = most if low.any() else _GLANCE
     while True:
         largest = float(low.max(initial=0.0))
         enough = (1.0 + TIGHT) * largest + noise
@@ -281,11 +284,11 @@ def largest_error(
         wanted = Wanted(enough, effort=effort)
         found = cell_errors(shape, spline, cells, center[cells], bands, wanted)
         improved = (found.low > low[cells]) | (found.high < high[cells])
-        if effort == _EFFORT and not improved.any():  # or no cell was left
+        if effort == most and not improved.any():  # or no cell was left
             return largest, float(high.max(initial=0.0))
         low[cells] = np.maximum(low[cells], found.low)
         high[cells] = np.minimum(high[cells], found.high)
-        effort = _EFFORT
+        effort = most
 
 
 def _in_bands(

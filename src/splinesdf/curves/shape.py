@@ -56,7 +56,7 @@ class Shape:
     name : str
         For titles and messages.
     notes : tuple of str
-        What the reader left out or mended, one line each.
+        What was left out or mended, one line each.
     """
 
     control: Floats

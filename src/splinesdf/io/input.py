@@ -26,7 +26,8 @@ def read(path: str | os.PathLike[str], *, fill: str | None = None, close: bool =
         ``.svg`` (paths and basic shapes, in user units, y pointing down), ``.json`` (formulas),
         ``.csv`` or ``.dat`` (the corners of polygons, a blank line between two).
     fill : {"nonzero", "evenodd"}, optional
-        Default: what the file says; else nonzero, or evenodd for a drawing of mere outlines.
+        Default: what the file says; else nonzero, or evenodd for a drawing of mere outlines. And
+        unless it is given, a contour that is drawn several times counts once.
     close : bool
         Close open contours by a straight piece instead of refusing them. Those of a drawing are
         joined first where their ends meet, within 1e-6 of its size.
@@ -34,8 +35,9 @@ def read(path: str | os.PathLike[str], *, fill: str | None = None, close: bool =
     Returns
     -------
     Shape
-        Its ``notes`` name what the file holds beside it, such as texts, images or open paths, and
-        how long a drawing says that one unit is, if that is neither a millimeter nor an inch.
+        Its ``notes`` name what the file holds beside it, such as texts, images or open paths, what
+        is drawn again, and how long a drawing says that one unit is, if that is neither a
+        millimeter nor an inch.
 
     Raises
     ------

@@ -23,6 +23,7 @@ import numpy as np
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Asked, Bends, Brackets, Candidates
+from splinesdf.kernels.bands import meets, seen, seen_in_bands
 from splinesdf.kernels.chains import find_chains, find_points, side_of
 from splinesdf.kernels.feet import gather
 
@@ -179,11 +180,11 @@ def _enclose_one(
             if exact and sign != 0:
                 low_u = max(low_u, sign * nearest - r - grain)
                 high_u = min(high_u, sign * nearest + r + grain)
-            if not _meets(asked, low_u, high_u, c, grain):
+            if not meets(asked, low_u, high_u, c, grain):
                 continue
-            found = _seen_in_bands(asked, c, errors, margin, value, room, max(lo, -hi))
+            found = seen_in_bands(asked, c, errors, margin, value, room, max(lo, -hi))
         else:
-            found = _seen(errors, margin, value, room)
+            found = seen(errors, margin, value, room)
         low = max(low, found)
         bound = max(-lo, hi)
         good = bound <= max(asked.threshold, (1.0 + asked.tight) * low)
@@ -270,73 +271,6 @@ def _steepest(triangle: Floats) -> float:
         x, y = pair[0] * vy - pair[1] * uy, pair[1] * ux - pair[0] * vx
         steepest = max(steepest, x * x + y * y)
     return float(scale * math.sqrt(steepest))
-
-
-@kernel
-def _meets(asked: Asked, low: float, high: float, c: Floats, grain: float) -> bool:
-    """Whether the distance, from low to high, or the spline can be in a band, or around it."""
-    bands = asked.bands
-    least = min(c[0], c[1], c[2], c[3], c[4], c[5]) - grain
-    most = max(c[0], c[1], c[2], c[3], c[4], c[5]) + grain
-    for k in range(bands.shape[0]):
-        spline = (least <= bands[k, 1], most >= bands[k, 0])
-        distance = (low <= bands[k, 1], high >= bands[k, 0])
-        if _counts(spline, distance, asked.around):
-            return True
-    return False
-
-
-@kernel
-def _seen(errors: Floats, margin: float, value: float, room: float) -> float:
-    """What |s - u| is at least in a corner or in p, where it is known up to some margins."""
-    corners = max(abs(errors[0]), abs(errors[1]), abs(errors[2]))
-    return float(max(0.0, corners - margin, abs(value) - room))
-
-
-@kernel
-def _seen_in_bands(
-    asked: Asked,
-    c: Floats,
-    errors: Floats,
-    margin: float,
-    value: float,
-    room: float,
-    everywhere: float,
-) -> float:
-    """What |s - u| is at least in some point of a triangle that counts for the bands.
-
-    It is at least ``everywhere`` on all of it. That counts if the spline, or the distance, is
-    known to be below a band's end in one point and above its other end in one, as both are
-    continuous.
-    """
-    bands = asked.bands
-    found = 0.0
-    middle = 0.25 * (c[0] + 2.0 * c[3] + c[1])
-    for k in range(bands.shape[0]):
-        low, high = bands[k, 0], bands[k, 1]
-        spline_below = spline_above = below = above = False
-        for v in range(4):
-            spline, error, unsure = middle, value, room
-            if v < 3:
-                spline, error, unsure = c[v], errors[v], margin
-            distance = spline - error
-            first = (spline <= high, spline >= low)
-            second = (distance + unsure <= high, distance - unsure >= low)
-            if _counts(first, second, asked.around):
-                found = max(found, abs(error) - unsure)
-            spline_below, spline_above = spline_below or first[0], spline_above or first[1]
-            below, above = below or second[0], above or second[1]
-        if _counts((spline_below, spline_above), (below, above), asked.around):
-            found = max(found, everywhere)
-    return found
-
-
-@kernel
-def _counts(spline: tuple[bool, bool], distance: tuple[bool, bool], around: bool) -> bool:
-    """Whether one is below and above a band's ends, or both together are."""
-    if around:
-        return (spline[0] or distance[0]) and (spline[1] or distance[1])
-    return (spline[0] and spline[1]) or (distance[0] and distance[1])
 
 
 @kernel
