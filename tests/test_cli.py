@@ -357,7 +357,7 @@ def test_names_are_no_markup(run: Command, tmp_path: Path) -> None:
     (tmp_path / "x.json").write_text(json.dumps(loop))
     for arguments in (
         ("fit", "x.json", "--tolerance", "0.1", "-o", "x.npz", "--plot", "x.png"),
-        ("offset", "x.json", "-d", "0.1", "--tolerance", "0.1", "-o", "x.svg"),
+        ("offset", "x.json", "-d", "0.1", "--tolerance", "0.02", "-o", "x.svg"),
         ("info", "x.npz"),
     ):
         done = run(*arguments)
