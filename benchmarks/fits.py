@@ -138,7 +138,7 @@ def table_a() -> None:
 
 
 def given_up(case: Case, share: float, **options: Any) -> FitResult:
-    """A fit, or what there was when it had more than `MOST` cells."""
+    """A fit, or the last round that had no more than `MOST` cells."""
     try:
         return case.fit(share, max_cells=MOST, **options)
     except ToleranceNotReached as stopped:

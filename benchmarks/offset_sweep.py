@@ -117,7 +117,7 @@ def one(run: Run, shape: ss.Shape, counts: Sequence[int], exact: bool) -> list[C
     tolerance = run.tolerance * shape.size
     began = time.perf_counter()
     try:
-        contours = ss.offset(shape, run.distance, tolerance=tolerance)
+        contours = ss.offset(shape, run.distance, tolerance=tolerance, coarse=True)
     except Exception as error:  # whatever it is, it is a failure, and the sweep goes on
         run.failures.append(("raised", f"{type(error).__name__}: {error}"))
         return []

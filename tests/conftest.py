@@ -1,10 +1,28 @@
+"""How the properties are searched: the same examples each time, or at random and for long.
+
+Whoever runs the tests must get the same answer each time, so the default draws the same examples
+wherever it is run. The random search is a command of its own:
+
+    python -m pytest -m hypothesis --hypothesis-profile=search
+"""
+
 from __future__ import annotations
 
-import os
+from hypothesis import HealthCheck, settings
 
-from hypothesis import settings
+from tests.examples import USUAL
 
-# Compilation makes the first example slow: no deadline. CI must not find a new bug each run.
-settings.register_profile("local", deadline=None)
-settings.register_profile("ci", deadline=None, derandomize=True)
-settings.load_profile("ci" if os.environ.get("CI") else "local")
+# Compilation makes the first example slow: no deadline.
+settings.register_profile("same", deadline=None, derandomize=True, print_blob=True)
+# So many times as many examples as by default. More finds more and takes longer: all properties
+# take about an hour of CPU. What is slow to draw is drawn nevertheless.
+SEARCH = 40
+settings.register_profile(
+    "search",
+    deadline=None,
+    derandomize=False,
+    max_examples=SEARCH * USUAL,
+    print_blob=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+settings.load_profile("same")

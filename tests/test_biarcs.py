@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
@@ -12,6 +12,7 @@ import splinesdf as ss
 from splinesdf.conics import Kind, classify, elements, rounding
 from splinesdf.contour import Contour, halve
 from tests.chains import circle, ellipse, from_arc, line, mixed_chain, open_chain, slot, turned
+from tests.examples import examples
 from tests.nearness import apart, dense
 from tests.shapes import gamma
 
@@ -128,7 +129,7 @@ def test_offsets_take_few_arcs() -> None:
     assert max(jumps(result).max() for result in results) <= 1e-5
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(
     weight=st.sampled_from([1e-3, 0.1, 0.9, 1.0, 3.0, 1e3]),
     x=st.floats(-3.0, 4.0),
@@ -168,3 +169,21 @@ def test_level_and_parent_are_kept() -> None:
     inner = Contour(0.5 * outer.arcs, outer.weights, True, -2.0, True, outer)
     result = ss.as_arcs(inner, tolerance=1e-3)
     assert (result.distance, result.y_down, result.parent) == (-2.0, True, outer)
+
+
+@pytest.mark.parametrize("way", [(0.0, 0.0), (64.0, -32.0), (-4096.0, 0.0)])
+def test_the_same_arcs_wherever_it_lies(way: tuple[float, float]) -> None:
+    """Lengths are differences: a line next to the origin is no shorter than elsewhere."""
+    # Two parabolas, and between them, in the origin, lines of 2e-3 and of 0.5, all smooth.
+    curve = np.array([[[-2.0, -1.0], [-1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [1.0, 0.0], [2.0, 1]]])
+    for length in (2.0**-9, 0.5):
+        between = line(0j, complex(length)).arcs
+        arcs = np.concatenate([curve[:1], between, curve[1:] + np.array([length, 0.0])])
+        chain = Contour(arcs + way, np.ones(3), closed=False)
+        result = check(chain, 1e-2)
+        exact = (result.arcs[:, ::2] == between[:, ::2] + way).all(axis=(1, 2))
+        # Shorter than the tolerance it is passed through, else it stays to the bit.
+        assert exact.sum() == (0 if length < 1e-2 else 1)
+        home = ss.as_arcs(Contour(arcs, np.ones(3), closed=False), tolerance=1e-2)
+        assert len(result.arcs) == len(home.arcs)
+        assert_allclose(result.arcs - way, home.arcs, rtol=0.0, atol=1e-11)

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import splinesdf as ss
@@ -193,8 +193,7 @@ def test_crossings_of_cubics_equal_those_of_fine_polylines(seed: int, degree: in
     expected = shapely.get_coordinates(crossing) - arclets.origin
     # Where two of the polylines' crossings are next to each other, the curves may only touch.
     apart = shapely.distance(*np.meshgrid(*[shapely.points(expected)] * 2))
-    if len(expected) and np.min(apart + 10.0 * np.eye(len(expected))) < 1e-2:
-        return
+    assume(np.min(apart + 10.0 * np.eye(len(expected)), initial=1.0) >= 1e-2)
     # The polylines are within 12 / 8 / 4000² of the curves, but a flat crossing moves farther.
     for place in expected:
         assert np.min(np.linalg.norm(places - place, axis=1)) < 1e-3
@@ -243,3 +242,43 @@ def test_thousands_of_contours_over_each_other() -> None:
     # Outside of all of them, the nearest one's circle is the boundary there.
     outside = depth < 0.0
     assert np.max(np.abs(found + depth)[outside]) < 1e-14
+
+
+@pytest.mark.parametrize("line_first", [True, False])
+def test_neighbors_that_cross_once_more_beside_their_joint(line_first: bool) -> None:
+    # A cubic that turns back along the line before it, on one side of it, and crosses it soon. At
+    # the joint the offset of one from the other is zero, exactly or to rounding.
+    rng = np.random.default_rng(5)
+    wrong = []
+    for _ in range(200):
+        corner, away = rng.integers(-60, 60, (2, 2)).astype(float)
+        if np.hypot(*away) < 10.0:
+            continue
+        angle = rng.choice([-1.0, 1.0]) * rng.uniform(0.003, 0.05)
+        c, s = np.cos(angle), np.sin(angle)
+        handle = corner + 0.4 * np.array([c * away[0] - s * away[1], s * away[0] + c * away[1]])
+        side = -np.sign(angle) * np.array([-away[1], away[0]])
+        far = corner + away + 0.7 * side
+        line = np.stack([corner + away, corner])
+        cubic = np.stack([corner, handle, far, far])
+        pieces = [line, cubic, np.stack([far, corner + away])]
+        if not line_first:
+            pieces = [piece[::-1] for piece in pieces[::-1]]
+        shape = ss.Shape.from_pieces([pieces])
+        if not inside_is_on_the_left(shape):
+            wrong.append((line.tolist(), cubic.tolist()))
+    assert not wrong, f"{len(wrong)} wrong: {wrong[0]}"
+
+
+def inside_is_on_the_left(shape: ss.Shape) -> bool:
+    """Whether points just beside all arcs of the boundary have the sides that they should."""
+    boundary = shape.boundary
+    every = np.arange(len(boundary.start))
+    middle, chord = np.full(len(every), 0.5), boundary.end - boundary.start
+    points, ahead = points_at(boundary, every, middle), tangents_at(boundary, every, middle)
+    left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1) / np.hypot(*ahead.T)[:, None]
+    beside = 1e-6 * np.hypot(*chord.T)[:, None] * left
+    inside, outside = (
+        ss.signed_distance(shape, points + sign * beside + boundary.origin) for sign in (1, -1)
+    )
+    return bool((inside < 0.0).all() and (outside > 0.0).all())

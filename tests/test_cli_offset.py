@@ -44,14 +44,14 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
 
 
 @pytest.mark.parametrize("shape", ["gamma2", "plate.svg"])
-@pytest.mark.parametrize("arcs", [(), ("--arcs",)])
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize(
+    ("name", "arcs"),
+    [(name, ()) for name in FORMATS] + [(name, ("--arcs",)) for name in ("a.dxf", "a.svg", "a.nc")],
+)
 def test_what_is_written_keeps_the_tolerance(
     run: Run, name: str, arcs: tuple[str, ...], shape: str
 ) -> None:
     """Also where y is mirrored: the plate's points down, the limaçon's up."""
-    if arcs and name not in ("a.dxf", "a.svg", "a.nc"):
-        return
     step = "0.02" if shape == "gamma2" else "2"
     wanted = ("-d", step, "-d", f"-{step}", "--tolerance", f"{0.01 * float(step):g}")
     status, out, err = run(shape, *wanted, "-o", name, "--check", *arcs)
@@ -66,7 +66,7 @@ def test_check_measures_what_is_there(tmp_path: Path, name: str) -> None:
     disk = ss.Shape.from_formula("2*cos(t)", "2*sin(t)")
     aside = circular(3.0, 0.3 + 0j, 0.1, 2.0 * math.pi, 5, distance=1.0)
     ss.write(tmp_path / name, [aside], tolerance=1e-7)
-    worst = measure_file(tmp_path / name, disk, [1.0])
+    worst = measure_file(tmp_path / name, disk, [1.0], 1e-4)
     assert worst.deviation == pytest.approx(0.3, abs=2e-7)
     assert worst.distance == 1.0
     assert worst.curves == {1.0: 1}
@@ -81,7 +81,7 @@ def test_check_finds_the_top_of_a_bump(tmp_path: Path, name: str) -> None:
     ring = circular(3.0, 0j, 0.4, 2.0 * math.pi, 4, distance=1.0)
     bumpy = replace(ring, arcs=ring.arcs * [1.0, 3.05 / 3.0])
     ss.write(tmp_path / name, [bumpy], tolerance=1e-6)
-    worst = measure_file(tmp_path / name, disk, [1.0])
+    worst = measure_file(tmp_path / name, disk, [1.0], 1e-4)
     assert worst.deviation == pytest.approx(0.05, abs=1.1e-6)
 
 
@@ -124,8 +124,14 @@ def test_options_reach_the_program(run: Run, tmp_path: Path) -> None:
     for words in ("G20", "G0 Z7", "G1 Z-2 F250", "conventional milling"):
         assert words in text
     x, y = map(float, re.search(r"G0 X(\S+) Y(\S+)", text).groups())
-    # The corner of the pocket, mirrored, that is nearest to the start.
-    assert (x, y) == pytest.approx((39.0, -29.0), abs=0.02)
+    # The innermost comes first: of the island less 1, mirrored, the point nearest to the start.
+    t = np.linspace(0.0, 2.0 * np.pi, 100_000)
+    along = np.stack([-5.0 * np.sin(t), 3.0 * np.cos(t)], axis=1)
+    inward = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+    inset = np.stack([19.0 + 5.0 * np.cos(t), -15.0 + 3.0 * np.sin(t)], axis=1) + inward
+    nearest = np.hypot(*(inset - [40.0, -30.0]).T).min()
+    assert np.hypot(*(inset - [x, y]).T).min() <= 0.01 + 1e-4
+    assert np.hypot(x - 40.0, y + 30.0) == pytest.approx(nearest, abs=0.01)
 
 
 def test_arcs_reach_the_drawing(run: Run, tmp_path: Path) -> None:
@@ -137,15 +143,16 @@ def test_arcs_reach_the_drawing(run: Run, tmp_path: Path) -> None:
 
 def test_steps_are_handed_on(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = {}
+    real = ss.offset
 
     def offset(shape: ss.Shape, **options: float) -> list[ss.Contour]:
         asked.update(options)
-        return [circle(1.0 + d, distance=d) for d in (0.5, 1.0)]
+        return real(shape, [0.5, 1.0], tolerance=options["tolerance"])
 
     monkeypatch.setattr(ss, "offset", offset)
     status, out, _ = run("gamma1", "--step", "0.5", "--tolerance", "1e-3", "-o", "a.geojson")
     assert status == 0
-    assert asked == {"step": 0.5, "tolerance": pytest.approx(1.25e-4)}
+    assert asked == {"step": 0.5, "tolerance": pytest.approx(1.25e-4), "coarse": True}
     assert "+0.5" in out
     assert "+1" in out
     features = json.loads((tmp_path / "a.geojson").read_text())["features"]
@@ -196,3 +203,69 @@ def test_an_eighth_of_the_tolerance_makes_the_fewest_arcs() -> None:
         counts[share] = sum(len(ss.as_arcs(c, tolerance=rest).arcs) for c in contours)
     assert counts[0.125] < 0.9 * counts[0.5]
     assert np.isfinite(list(counts.values())).all()
+
+
+def test_the_message_names_the_tolerance_that_was_given(run: Run) -> None:
+    """Not the offset's share of it, which was once told: -0.875 for -1."""
+    for name in FORMATS:
+        for given in ("-1", "0", "nan", "-0.0123", "inf"):
+            status, _, err = run("gamma1", "-d", "0.1", f"--tolerance={given}", "-o", name)
+            assert status == 2
+            assert re.search(rf"got {re.escape(given)}(\s|$|:)", err), err
+        status, _, err = run("gamma1", "-d", "0.1", "--tolerance", "1.25e-14", "-o", name)
+        assert status == 2
+        assert "1.25e-14" in err
+        least = re.search(r"at least (\S+) for", err)
+        assert least is not None, err
+        assert float(least[1]) > 1.25e-14
+
+
+def test_what_the_library_says_of_a_share_names_the_whole(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def offset(*_: object, tolerance: float, **__: object) -> list[ss.Contour]:
+        raise ss.InputError(f"no such tolerance as {tolerance:g}")
+
+    monkeypatch.setattr(ss, "offset", offset)
+    _, _, err = run("gamma1", "-d", "3", "--tolerance", "0.5", "-o", "a.svg")
+    assert "0.4375" in err
+    assert "tolerance 0.5" in err
+
+
+def test_no_point_of_the_plane_is_said_only_where_it_is_true(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ss, "offset", lambda *_, **__: [])  # as with a huge tolerance
+    for distances, there in (
+        (("-0.4",), True),  # the ellipse is 0.444 deep
+        (("-0.5",), False),
+        (("-0.5", "-7"), False),
+        (("-0.5", "-0.1"), True),
+        (("0.1",), True),
+        (("0",), True),
+    ):
+        asked = [word for d in distances for word in ("-d", d)]
+        status, _, err = run("gamma1", *asked, "--tolerance", "9", "--coarse", "-o", "a.svg")
+        assert status == 2
+        assert ("no point of the plane" in err) == (not there)
+        assert ("tolerance 9" in err) == there
+    _, _, err = run("gamma1", "--step", "-0.4", "--tolerance", "9", "--coarse", "-o", "a.svg")
+    assert "no point of the plane" not in err
+
+
+def test_nothing_is_left_is_said_only_where_it_is_true(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def offset(_: ss.Shape, distance: float, **__: object) -> list[ss.Contour]:
+        return [circle(1.0, distance=distance)] if distance > 0.0 else []
+
+    monkeypatch.setattr(ss, "offset", offset)
+    asked = (
+        *("-d", "0.5", "-d", "-0.4", "-d", "-0.5"),
+        *("--tolerance", "9", "--coarse", "-o", "a.csv"),
+    )
+    status, out, err = run("gamma1", *asked)
+    assert status == 0, err
+    told = {line.split()[0]: line for line in out.splitlines() if re.match(r"\s*[+-]\d", line)}
+    assert "nothing as wide as the tolerance" in told["-0.4"]
+    assert "nothing is left" in told["-0.5"]

@@ -98,6 +98,10 @@ def test_a_tolerance_below_rounding_is_refused() -> None:
         ({"weights": np.array([1.0, 1.0, 1.0, 0.0])}, "positive weights"),
         ({"weights": np.array([1.0, 1.0, 1.0, math.nan])}, "finite"),
         ({"arcs": circle().arcs[::-1]}, "start exactly where"),
+        ({"weights": np.array([1.0, 1.0, 1.0, 1e-300])}, "from 1e-60 to 1e\\+60, got 1e-300"),
+        ({"weights": np.array([1.0, 1.0, 1.0, 1e300])}, "an arc is its chord or its legs"),
+        ({"arcs": 1e100 * circle().arcs}, "use another unit"),
+        ({"arcs": 1e-100 * circle().arcs}, "use another unit"),
     ],
 )
 def test_a_broken_chain_is_refused(change: dict[str, np.ndarray], message: str) -> None:

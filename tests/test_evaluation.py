@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import splinesdf as ss
@@ -16,6 +16,7 @@ from splinesdf.meshes import Grid, Mesh, Quadtree
 from splinesdf.spaces import hierarchical_ordinates, tensor_ordinates
 from splinesdf.spaces.cells import TRIANGLES, center_ordinates
 from splinesdf.spline import SplineSDF
+from tests.examples import examples
 from tests.naive_tree import cells_at, refine
 from tests.shapes import UNIT, gamma
 from tests.test_spaces import random_quadtree
@@ -234,7 +235,7 @@ PLACE = st.tuples(*(st.floats(-2.0, 3.0, allow_subnormal=False),) * 2)
 
 
 @given(PLACE, PLACE)
-@settings(max_examples=300)
+@examples(300)
 def test_extension_is_1_lipschitz_and_with_the_spline_to_twice_its_error(
     p: tuple[float, float], q: tuple[float, float]
 ) -> None:

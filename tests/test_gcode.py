@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import splinesdf as ss
 from splinesdf.contour import Contour, mirrored
 from tests.chains import circle, circular, ellipse, mixed_chain, open_chain, slot, turned
+from tests.examples import examples
 from tests.nearness import apart, apart_from_line, dense
 
 NUMBER = re.compile(r"[A-Z]-?\d+(\.\d+)?")
@@ -213,7 +214,44 @@ def test_the_nearest_contour_is_next(tmp_path: Path) -> None:
     assert starts == [31 + 0j, 21 + 0j, 11 + 0j, 1 + 0j]
 
 
-@settings(max_examples=15)
+@pytest.mark.parametrize("seed", range(4))
+def test_what_lies_in_a_contour_is_cut_before_it(tmp_path: Path, seed: int) -> None:
+    """Rings in rings beside each other and all in one, given in any order; judged by radii.
+
+    Of those in which nothing is left the nearest is next, so the ways in between are greedy.
+    """
+    random = np.random.default_rng(seed)
+    disks = [(complex(50.0, 0.0), 90.0, 1.0)]
+    for column in range(3):
+        center = complex(50.0 * column, random.uniform(-5.0, 5.0))
+        disks += [(center, radius, (-1.0) ** radius) for radius in (2.0, 5.0, 9.0, 14.0)]
+        # Two in the largest but one, beside those in the middle.
+        disks += [(center + side * 7.0, 1.0, 1.0) for side in (-1, 1)]
+    random.shuffle(disks)
+    y_down = bool(seed % 2)
+    rings = [
+        replace(circle(radius, (at.real, -at.imag if y_down else at.imag), d), y_down=y_down)
+        for at, radius, d in disks
+    ]
+    start = (random.uniform(-100.0, 100.0), random.uniform(-100.0, 100.0))
+    cuts = program(tmp_path, rings, milling=ss.Milling(start=start)).cuts
+    assert len(cuts) == len(disks)
+    left, here = dict(enumerate(disks)), complex(*start)
+    for cut in cuts:
+        start_of = cut.points[0]
+        ready = {
+            k: abs(abs(here - at) - radius)
+            for k, (at, radius, _) in left.items()
+            if not any(abs(at - a) + r < radius for a, r, _ in left.values())
+        }
+        chosen = min(left, key=lambda k: abs(abs(start_of - left[k][0]) - left[k][1]))
+        assert chosen in ready
+        assert abs(start_of - here) <= min(ready.values()) + 1e-3
+        del left[chosen]
+        here = cut.points[-1]
+
+
+@examples(15)
 @given(x=st.floats(-10.0, 10.0), y=st.floats(-10.0, 10.0), which=st.sampled_from("csm"))
 def test_a_contour_is_entered_at_its_nearest_point(x: float, y: float, which: str) -> None:
     chain = {
@@ -247,6 +285,38 @@ def test_numbers_have_no_exponents_at_any_scale(tmp_path: Path, power: int) -> N
         # Larger ones are too large for the machine's limits, not for its arithmetic.
         (cut,) = Machine(text, 1e-6 * scale).cuts
         compare(cut, chain, 1e-4 * scale)
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e-12, 1e13])
+def test_no_size_is_rounded_away(tmp_path: Path, scale: float) -> None:
+    """Regression: a contour of 1e-30 became moves from zero to zero, with a depth of zero."""
+    chain = replace(mixed_chain(), arcs=scale * mixed_chain().arcs)
+    milling = ss.Milling(depth=2.5e-7, safe_height=0.25, feed=0.125)
+    ss.write(tmp_path / "a.nc", [chain], tolerance=1e-3 * scale, milling=milling)
+    text = (tmp_path / "a.nc").read_text()
+    assert "Z0.25\n" in text
+    assert "G1 Z-0.00000025 F0.125\n" in text
+    words = re.findall(r"X(\S+) Y(\S+)", text)
+    at = np.array(words, dtype=float) / scale
+    assert len(np.unique(at.round(3), axis=0)) > 5
+    assert apart(at, mixed_chain(), 1e-5).max() <= 1e-3 + 1e-5
+
+
+def test_flat_arcs_are_read_as_they_are(tmp_path: Path) -> None:
+    """Regression: a center 1e9 away, of which a machine is off by more than the tolerance."""
+    radius, tolerance = 1e9, 1e-7
+    arc = circular(radius, complex(0.0, radius), -0.5 * math.pi, 1e3 / radius, 1)
+    chain = replace(arc, distance=-1.0)
+    ss.write(tmp_path / "a.nc", [chain], tolerance=tolerance)
+    text = (tmp_path / "a.nc").read_text()
+    assert "G2 " not in text
+    assert "G3 " not in text
+    words = re.findall(r"G1 X(\S+) Y(\S+)", text)
+    line = np.array(words, dtype=float)
+    # y = x² / 2r, to 1e-13, in ends and middles of the chords.
+    middles = 0.5 * (line[1:] + line[:-1])
+    for x, y in np.concatenate([line, middles]):
+        assert y == pytest.approx(x * x / (2.0 * radius), abs=tolerance)
 
 
 def test_far_from_the_origin(tmp_path: Path) -> None:

@@ -88,7 +88,9 @@ def test_no_distance_is_asked_twice_between_levels(
         size = np.abs(trial.center)
         bad = np.flatnonzero(size < np.median(size))
         trial.known.over[:] = True
-        trial.refine(bad)
+        planned = trial.plan(bad)
+        trial.refine()
+        assert len(trial.center) == planned
     points = np.concatenate(asked)
     assert trial.evaluations == len(points)
     inside = np.all((points > 0.0) & (points < 1.0), axis=1)

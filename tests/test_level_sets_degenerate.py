@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy import ndimage
 
@@ -15,6 +16,7 @@ from splinesdf.meshes import Grid, Quadtree
 from splinesdf.quasi import quasi_interpolate
 from splinesdf.spaces import hierarchical_ordinates, tensor_ordinates
 from splinesdf.spline import SplineSDF
+from tests.examples import examples
 from tests.naive_tree import refine
 
 Coefficients = Callable[[np.random.Generator, tuple[int, ...]], np.ndarray]
@@ -97,7 +99,7 @@ def check_values_and_ends(spline: SplineSDF, contours: list[Contour], tolerance:
             assert np.minimum(np.abs(ends), np.abs(1.0 - ends)).min(axis=1).max() < 1e-15
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(
     st.integers(0, 10**6),
     st.sampled_from(sorted(SPACES)),
@@ -118,6 +120,7 @@ def check_values_and_ends(spline: SplineSDF, contours: list[Contour], tolerance:
 @example(749330, "tensor", "whole", -1.0)  # the same
 @example(768250, "hierarchical", "whole", 0.5)  # an ellipse that is a point
 @example(15, "hierarchical", "whole", 0.5)  # a saddle at the level inside a triangle
+@example(999999, "hierarchical", "whole", 0.5)  # an ellipse that touches a side in a vertex
 def test_area_below_the_level_is_what_pixels_say(
     seed: int, space: str, draw: str, level: float
 ) -> None:
@@ -134,6 +137,26 @@ def test_area_below_the_level_is_what_pixels_say(
     slack = 0.1 * sum(contour.length for contour in contours) / PIXELS + 1e-4
     assert max(areas) > np.mean(values < least) - slack
     assert min(areas) < np.mean(values < most) + slack
+
+
+@given(
+    st.integers(0, 10**6),
+    st.sampled_from(sorted(SPACES)),
+    st.sampled_from(sorted(DRAWS)),
+    st.sampled_from([0.0, 0.25, 0.3, 0.5, -1.0]),
+    st.sampled_from([-60, -30, 30, 60]),
+)
+def test_level_sets_scale_with_the_values(
+    seed: int, space: str, draw: str, level: float, power: int
+) -> None:
+    """Times a power of two nothing is rounded otherwise: the same contours, to the bit."""
+    spline = SPACES[space](np.random.default_rng(seed), DRAWS[draw])
+    scaled = replace(spline, ordinates=2.0**power * spline.ordinates)
+    found, other = spline.contours(level), scaled.contours(2.0**power * level)
+    assert [contour.closed for contour in found] == [contour.closed for contour in other]
+    for contour, image in zip(found, other, strict=True):
+        assert np.array_equal(contour.arcs, image.arcs)
+        assert np.array_equal(contour.weights, image.weights)
 
 
 @pytest.mark.parametrize("space", SPACES)

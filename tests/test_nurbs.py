@@ -8,13 +8,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 import splinesdf as ss
 from splinesdf.curves.nurbs import nurbs_pieces
 from splinesdf.curves.shape import evaluate_bezier
+from tests.examples import examples
 
 EPS = float(np.finfo(float).eps)
 # Irrational steps, so that no sample is a node of an interpolant.
@@ -138,8 +139,7 @@ def domain_spans(knots: np.ndarray, degree: int) -> list[tuple[float, float]]:
 def test_polynomial_splines_are_scipys(spline: tuple[Points, np.ndarray, int]) -> None:
     control, knots, degree = spline
     spans = domain_spans(knots, degree)
-    if not spans:
-        return
+    assume(spans)
     # Seen as a graph, the first coordinate of any point is its parameter.
     graph = np.column_stack([greville(knots, degree), control[:, 1]])
     pieces = nurbs_pieces(graph, degree=degree, knots=knots)
@@ -170,23 +170,21 @@ def test_pieces_turn_with_the_control_points(
     spline: tuple[Points, np.ndarray, int], angle: float, shift: float
 ) -> None:
     control, knots, degree = spline
-    if degree > 7 or not domain_spans(knots, degree):
-        return
+    assume(degree <= 7 and domain_spans(knots, degree))
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
     before = nurbs_pieces(control, degree=degree, knots=knots)
     after = nurbs_pieces(control @ turn + shift, degree=degree, knots=knots)
     # Rounding may make a piece of length zero one that is not.
-    if before and len(before) == len(after):
-        found, expected = np.concatenate(after), np.concatenate(before) @ turn + shift
-        # Two ulp a step of the blossom, at coordinates up to 10.
-        assert np.abs(found - expected).max() <= 2 * 8 * EPS * 10.0
+    assume(before and len(before) == len(after))
+    found, expected = np.concatenate(after), np.concatenate(before) @ turn + shift
+    # Two ulp a step of the blossom, at coordinates up to 10.
+    assert np.abs(found - expected).max() <= 2 * 8 * EPS * 10.0
 
 
 @given(splines())
 def test_a_reversed_curve_has_the_same_pieces(spline: tuple[Points, np.ndarray, int]) -> None:
     control, knots, degree = spline
-    if degree > 7 or not domain_spans(knots, degree):
-        return
+    assume(degree <= 7 and domain_spans(knots, degree))
     forward = nurbs_pieces(control, degree=degree, knots=knots)
     backward = nurbs_pieces(control[::-1], degree=degree, knots=-knots[::-1])
     assert len(forward) == len(backward)
@@ -199,8 +197,7 @@ def test_equal_weights_are_no_weights(
     spline: tuple[Points, np.ndarray, int], weight: float
 ) -> None:
     control, knots, degree = spline
-    if not domain_spans(knots, degree):
-        return
+    assume(domain_spans(knots, degree))
     plain = nurbs_pieces(control, degree=degree, knots=knots)
     weighted = nurbs_pieces(
         control, degree=degree, knots=knots, weights=np.full(len(control), weight)
@@ -226,7 +223,7 @@ def exact_height(t: float, heights: list[float], masses: list[float]) -> tuple[f
     return float(value(at)), float((value(at + step) - value(at)) / step)
 
 
-@settings(max_examples=40)  # fractions are slow
+@examples(40)  # fractions are slow
 @given(
     st.lists(st.tuples(st.floats(-3.0, 3.0), st.integers(-6, 6)), min_size=3, max_size=12),
 )

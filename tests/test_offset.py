@@ -196,7 +196,7 @@ def test_bad_distances_are_refused_in_one_line(distances: ArrayLike) -> None:
         ss.offset(SQUARE, distances, tolerance=1e-2)
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf, 1e-18, "fine", None, [1e-3], 1j])
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, np.nan, np.inf, 1e-18, "fine", [1e-3], 1j])
 def test_bad_tolerances_are_refused_in_one_line(tolerance: float) -> None:
     with pytest.raises(ss.InputError, match=r"^expected a .*tolerance.*, got .*$"):
         ss.offset(SQUARE, 0.1, tolerance=tolerance)

@@ -9,12 +9,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import splinesdf as ss
 from splinesdf.contour import Contour, evaluate
 from tests import oracles
+from tests.examples import examples
 from tests.glyphs import glyphs
 from tests.mechanical import parts
 from tests.shapes import Loops, gamma, loops_of, rebuilt
@@ -31,7 +32,7 @@ NAMES = ["gamma2", "gamma3", "DejaVuSans:g", "slotted link", "involute gear", "r
 SHARES = (0.021, -0.017, 0.077)
 some_shape = st.sampled_from(NAMES)
 some_share = st.sampled_from(SHARES)
-few = settings(max_examples=12)
+few = examples(12)
 
 
 @cache
@@ -159,7 +160,7 @@ CONVEX = {
 
 
 @pytest.mark.parametrize("name", CONVEX)
-@settings(max_examples=5)
+@examples(5)
 @given(st.floats(0.01, 0.5), st.floats(0.01, 0.5))
 def test_outward_of_a_convex_shape_distances_add_up(name: str, a: float, b: float) -> None:
     shape = CONVEX[name]

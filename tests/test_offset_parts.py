@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import shapely
 
 import splinesdf as ss
 from splinesdf._tables import FREE, ROUND, STRAIGHT
 from splinesdf.contour import Contour, evaluate
 from splinesdf.kernels.meetings import find_meetings
-from splinesdf.nesting import nested
+from splinesdf.nesting import enclosed, nested
 from splinesdf.offset import deviation
 from splinesdf.offsets.trimmed import parallels, trimmed
 from tests.chains import circle
@@ -67,13 +68,12 @@ def test_kinds_are_told_by_points() -> None:
         weights=np.tile([1.0, np.sqrt(0.5)], 5)[:9],
     )
     formula = ss.Shape.from_formula("5 - 3*sin(2*t)", "3*cos(2*t)", t=(0, "pi"))
-    for shape, center, radius in ((nurbs, (0, 0), 1.0), (formula, (5, 0), 3.0)):
+    for shape, center in ((nurbs, (0, 0)), (formula, (5, 0))):
         assert (shape.kinds.kind == ROUND).all()
         # Pieces of 0.2 radians: rounding over the square of that.
         assert shape.kinds.center + shape.boundary.origin == pytest.approx(
             np.broadcast_to(np.array(center, float), shape.kinds.center.shape), abs=1e-11
         )
-        assert np.abs(shape.kinds.radius) == pytest.approx(radius, rel=1e-11)
     ellipse = ss.Shape.from_formula("2*cos(t)", "sin(t)")
     assert (ellipse.kinds.kind == FREE).all()
     # Four cubics that look like a circle are none.
@@ -137,6 +137,24 @@ def test_nesting_does_not_depend_on_where_a_contour_starts(turns: int) -> None:
     first, second = nested([Contour(arcs, weights), start])
     assert second.parent is first
     assert first.parent is None
+
+
+@pytest.mark.parametrize("turns", range(4))
+def test_rays_cross_an_arc_that_dips_through_them(turns: int) -> None:
+    """With both ends on one side of the ray, an arc crosses it twice, or with one end beyond."""
+    bag = np.array([[[-1.0, 1.0], [0.0, -7.0], [1.0, 1.0]], [[1.0, 1.0], [0.0, 1.5], [-1.0, 1.0]]])
+    c, s = [(1, 0), (0, 1), (-1, 0), (0, -1)][turns]
+    turn = np.array([[c, s], [-s, c]], dtype=float)
+    points = np.random.default_rng(6).uniform(-1.5, 1.5, (400, 2)) * [1.0, 2.0] @ turn
+    for weight in (0.3, 1.0, 5.0):
+        outer = Contour(bag @ turn, np.array([weight, 1.0]))
+        line = outer.points(1e-7)
+        clear = shapely.distance(shapely.LineString(line), shapely.points(points)) > 1e-6
+        inside = shapely.contains(shapely.Polygon(line), shapely.points(points))
+        assert 50 < np.count_nonzero(inside) < 350
+        assert np.array_equal(enclosed(outer, points)[clear], inside[clear])
+    inner = circle(0.1, center=(0.0, 0.0))
+    assert nested([outer, inner])[1].parent is outer
 
 
 def test_fields_of_level_sets_are_nested_too() -> None:

@@ -16,7 +16,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import splinesdf as ss
-from splinesdf import figures, paper, plot
+from splinesdf import paper, plot
 from splinesdf.meshes import Grid, Quadtree
 from tests.shapes import UNIT, gamma
 
@@ -274,19 +274,6 @@ def test_plots_do_not_load_pyplot() -> None:
 )
 def test_captions_round_up(value: float, text: str) -> None:
     assert plot.at_most(value) == text
-
-
-def test_the_figures_of_the_paper(tmp_path: Path) -> None:
-    paths = figures.figures(tmp_path / "new" / "folder")
-    assert [path.name for path in paths] == [f"figure{k:02}.png" for k in range(5, 13)]
-    assert sorted((tmp_path / "new" / "folder").iterdir()) == paths
-    assert {png_size(path)[0] for path in paths} == {1600}
-
-
-def test_figures_need_a_folder(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(ss.InputError, match="cannot make the folder"):
-        figures.figures(tmp_path / "file")
 
 
 @pytest.mark.parametrize("name", ["gamma1", "gamma2"])

@@ -148,11 +148,3 @@ def test_no_space_left(share: float, tmp_path: Path) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert path.read_bytes() == before
     assert os.listdir(tmp_path) == ["fit.npz"]  # noqa: PTH208
-
-
-def test_what_was_left_over_is_in_nobodys_way(tmp_path: Path) -> None:
-    path = tmp_path / "fit.npz"
-    (tmp_path / ".0123456789abcdef.tmp").write_bytes(b"PK half a file")
-    spline = fit_with_shape()
-    spline.save(path)
-    assert np.array_equal(ss.load(path).ordinates, spline.ordinates)

@@ -11,6 +11,7 @@ from splinesdf.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
+from splinesdf.io.written import curves_in
 from tests.chains import (
     circle,
     mixed_chain,
@@ -94,3 +95,14 @@ def test_what_fails_leaves_the_old_file(
         write(tmp_path / name, [mixed_chain()])
     assert (tmp_path / name).read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+@pytest.mark.parametrize("name", ["a.svg", "a.csv", "a.wkt", "a.geojson", "a.dxf", "a.nc"])
+def test_a_small_contour_far_away_is_written_without_a_tolerance(tmp_path: Path, name: str) -> None:
+    """Regression: a millionth of its size, the default, was below rounding and refused."""
+    write(tmp_path / name, [circle(1e-2, (1e8, -1e8))])
+    (curve,) = curves_in(tmp_path / name)
+    center = [1e8, 1e8 if name == "a.svg" else -1e8]
+    off = np.hypot(*(curve.at(np.linspace(0.0, curve.count, 200)) - center).T) - 1e-2
+    # 64 ulp of the coordinates, where 16 are the tolerance.
+    assert np.abs(off).max() <= 64 * np.finfo(float).eps * 1e8

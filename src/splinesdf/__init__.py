@@ -19,6 +19,7 @@ from splinesdf.errors import (
     ToleranceNotReached,
 )
 from splinesdf.fit import FitResult, fit
+from splinesdf.interpolation import interpolate
 from splinesdf.io.input import read
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
@@ -42,6 +43,7 @@ __all__ = [
     "as_arcs",
     "closest_point",
     "fit",
+    "interpolate",
     "load",
     "offset",
     "project",

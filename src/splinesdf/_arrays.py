@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import operator
+from itertools import chain
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -14,6 +18,46 @@ Bools = NDArray[np.bool_]
 # Coordinates up to this, and sizes down to its inverse: beyond, the products of four lengths that
 # the distance needs overflow or vanish, without a word.
 LARGEST = 1e60
+# What arrays hold that float64 would take for numbers, or refuse in NumPy's words.
+_KINDS = {"b": "booleans", "c": "complex numbers", "M": "dates", "m": "time spans"} | dict.fromkeys(
+    "SUT", "texts"
+)
+# Levels of lists in lists. More: none, as arrays have no more axes; fewer: a mask is missed.
+_DEEPEST = 64
+# What is shorter than this share of the size counts as a point. Shorter: squares of its length, and
+# quotients by it, leave the range of floats; longer: it comes near to rounding, which is 1e-16.
+NOTHING = 1e-20
+
+
+def as_floats(values: ArrayLike, what: str) -> Floats:
+    """Numbers as a contiguous float64 array of the shape they came in.
+
+    NaN and infinity pass.
+
+    Raises
+    ------
+    InputError
+        That names ``what``: for texts, booleans, complex numbers, dates, masked arrays, ragged
+        lists and anything else that NumPy would not, or not without loss, take for real numbers.
+    """
+    if type(values) is not np.ndarray and (lost := _lost(values)):
+        raise InputError(f"expected {what} as numbers, got {lost}")
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError, OverflowError) as error:
+        reason = _one_line(error)
+        raise InputError(f"expected {what} as numbers, got {shown(values)}: {reason}") from error
+    if array.dtype.kind == "O":
+        numbers = [as_number(value, what) for value in array.flat]
+        return np.array(numbers, dtype=np.float64).reshape(array.shape)
+    if array.dtype.kind not in "fiu":
+        got = _KINDS.get(array.dtype.kind, f"an array of {array.dtype}")
+        got = shown(values) if array.ndim == 0 else got
+        raise InputError(f"expected {what} as numbers, got {_one_line(got)}")
+    if array.dtype.itemsize <= 8:
+        return np.asarray(array, dtype=np.float64, order="C")
+    with np.errstate(over="ignore"):  # a long double beyond the range is infinite
+        return np.asarray(array, dtype=np.float64, order="C")
 
 
 def as_points(points: ArrayLike) -> Floats:
@@ -21,18 +65,34 @@ def as_points(points: ArrayLike) -> Floats:
 
     NaN and infinity pass: they are answered by NaN, point by point.
     """
-    try:
-        array = np.ascontiguousarray(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected points as numbers of shape (..., 2): {error}") from error
+    array = as_floats(points, "points")
     if array.ndim == 0 or array.shape[-1] != 2:
         raise InputError(f"expected points of shape (..., 2), got shape {array.shape}")
     return array
 
 
+def as_number(value: Any, name: str) -> float:
+    """One real number as a float, perhaps NaN or infinite, or an `InputError` that names it."""
+    if isinstance(value, np.ndarray) and value.ndim == 0 and not _lost(value):
+        value = value[()]
+    # A bool is a number to Python, and a text of digits one to float(), as a time span of NumPy's
+    # is; an array of one number is one only with a warning.
+    plain = isinstance(value, np.floating | np.integer) or not isinstance(
+        value, bool | np.generic | np.ndarray | str | bytes | bytearray
+    )
+    try:
+        if plain and hasattr(type(value), "__float__"):
+            return float(value)
+    except OverflowError as error:
+        raise InputError(f"expected {name} up to 1.8e308, got a number beyond it") from error
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"expected a number for {name}, got {shown(value)}")
+
+
 def finite(value: float, name: str) -> float:
     """The value as a finite number, or an `InputError` that names it."""
-    number = _as_number(value, name)
+    number = as_number(value, name)
     if not np.isfinite(number):
         raise InputError(f"expected a finite {name}, got {number:g}")
     return number
@@ -40,17 +100,31 @@ def finite(value: float, name: str) -> float:
 
 def positive(value: float, name: str) -> float:
     """The value as a finite number above zero, or an `InputError` that names it."""
-    number = _as_number(value, name)
+    number = as_number(value, name)
     if not (np.isfinite(number) and number > 0.0):
         raise InputError(f"expected a positive {name}, got {number:g}")
     return number
 
 
-def _as_number(value: float, name: str) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a number for {name}, got {value!r}") from error
+def whole(value: Any, name: str, *, least: int, most: int | None = None) -> int:
+    """The value as a whole number within bounds, or an `InputError` that names it.
+
+    A float passes if it is whole: 1e6 is how people write a million.
+    """
+    number = None
+    if isinstance(value, float | np.floating) and float(value).is_integer():
+        number = int(value)
+    elif not isinstance(value, bool | np.bool_):
+        try:
+            number = operator.index(value)
+        except TypeError:
+            number = None
+    if number is None:
+        raise InputError(f"expected a whole number for {name}, got {shown(value)}")
+    if number < least or (most is not None and number > most):
+        limits = f"from {least} on" if most is None else f"from {least} to {most:,}"
+        raise InputError(f"expected {name} {limits}, got {shown(number)}")
+    return number
 
 
 def largest_coordinate(points: Floats) -> float:
@@ -61,3 +135,40 @@ def largest_coordinate(points: Floats) -> float:
             f"expected coordinates up to {LARGEST:g}, got {largest:.3g}: use another unit"
         )
     return largest
+
+
+def shown(value: object) -> str:
+    """A value for a message: one line, not all of a long one."""
+    try:
+        text = ascii(value)
+    except Exception:  # whatever a stranger's repr raises; an integer of thousands of digits
+        return f"a value of type {type(value).__name__}"
+    return _one_line(text)
+
+
+def _one_line(text: object) -> str:
+    line = " ".join(str(text).split())
+    return line if len(line) <= 60 else f"{line[:57]}..."
+
+
+def _lost(values: object) -> str:
+    """What NumPy would lose of masked arrays and booleans, in lists, too; nothing if none is there.
+
+    It drops masks, and of a list that holds a number and True it makes two numbers. Lists are
+    looked through level by level and by the types in each, as they may hold millions.
+    """
+    level: list[object] = [values]
+    for _ in range(_DEEPEST):
+        kinds = set(map(type, level))
+        if any(issubclass(kind, np.ma.MaskedArray) for kind in kinds):
+            return "a masked array: fill or drop what it masks"
+        arrays = (value for value in level if isinstance(value, np.ndarray))
+        if kinds & {bool, np.bool_} or (
+            np.ndarray in kinds and any(array.dtype == np.bool_ for array in arrays)
+        ):
+            return "booleans"
+        if not kinds & {list, tuple}:
+            break
+        lists = [value for value in level if isinstance(value, list | tuple)]
+        level = list(chain.from_iterable(lists))
+    return ""

@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
+import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from splinesdf._paths import as_path, shortened
 from splinesdf.errors import InputError
+
+try:
+    import fcntl
+except ImportError:  # on Windows, which deletes no file that is open
+    fcntl = None  # type: ignore[assignment]
+
+_LEFT = re.compile(r"\.splinesdf-[0-9a-f]{16}\.tmp")
+# Seconds for which nothing was written to a temporary file that may be swept. Longer: what a killed
+# process left stays for longer; shorter: a file system without locks could lose a writer's file.
+_OLD = 3600.0
 
 
 @contextmanager
@@ -20,8 +32,8 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     The bytes go to a temporary file in the same folder, which is flushed to the disk and then
     renamed. If anything is raised on the way, interrupts included, the temporary file is removed
     and what stood under the name before is untouched. If the process is killed the temporary file
-    may stay, hidden, as ``.<16 hex digits>.tmp``; it can be deleted. A link is followed, a file's
-    mode is kept.
+    may stay, hidden, as ``.splinesdf-<16 hex digits>.tmp``: the first to write to this folder an
+    hour later deletes it. A link is followed, a file's mode is kept.
 
     Raises
     ------
@@ -32,12 +44,14 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     check_target(path)
     target = Path(os.path.realpath(path))
     # Beside the target, because a rename is atomic only within one file system.
-    temporary = target.with_name(f".{secrets.token_hex(8)}.tmp")
+    temporary = target.with_name(f".splinesdf-{secrets.token_hex(8)}.tmp")
     try:
         try:
             # "x" creates with the mode of the umask; tempfile would create with 0600.
             with temporary.open("xb") as file:
-                if target.exists():
+                _lock(file)
+                _sweep(target.parent, os.fstat(file.fileno()).st_mtime)
+                with suppress(FileNotFoundError):
                     temporary.chmod(target.stat().st_mode & 0o7777)
                 yield file
                 file.flush()
@@ -49,6 +63,36 @@ def atomic_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     except OSError as error:
         reason = error.strerror or str(error)
         raise InputError(f"cannot write {os.fspath(path)!r}: {reason}") from error
+
+
+def _lock(file: BinaryIO) -> bool:
+    """Lock a file as long as it is open and this process lives; whether it was to be had."""
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:  # another holds it, or this file system has no locks
+        return False
+    return True
+
+
+def _sweep(folder: Path, now: float) -> None:
+    """Delete what killed processes left: old temporary files that nobody holds a lock on.
+
+    Their age is taken by the clock that stamps this folder's files. Whatever goes wrong is none of
+    the writer's business.
+    """
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if not _LEFT.fullmatch(entry.name):
+                continue
+            with suppress(OSError):
+                found = entry.stat(follow_symlinks=False)
+                if stat.S_ISREG(found.st_mode) and now - found.st_mtime > _OLD:
+                    with open(entry.path, "rb") as file:  # noqa: PTH123
+                        gone = _lock(file)
+                    if gone:
+                        os.unlink(entry.path)  # noqa: PTH108
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
@@ -73,10 +117,12 @@ def check_target(path: str | os.PathLike[str]) -> None:
         raise InputError(
             f"cannot write {name!r}: the folder {str(target.parent)!r} does not exist, create it"
         )
-    if target.exists() and not target.is_file():
-        # Renaming over a device such as /dev/null would destroy it.
-        raise InputError(f"cannot write {name!r}: it is not a regular file")
+    # Asked once: another process may replace or remove the file meanwhile.
+    with suppress(OSError):
+        if not stat.S_ISREG(target.stat().st_mode):
+            # Renaming over a device such as /dev/null would destroy it.
+            raise InputError(f"cannot write {name!r}: it is not a regular file")
     if not os.access(target.parent, os.W_OK) or (
-        target.exists() and not os.access(target, os.W_OK)
+        not os.access(target, os.W_OK) and os.access(target, os.F_OK)
     ):
         raise InputError(f"cannot write {name!r}: permission denied")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 import math
+import os
 import re
 import zipfile
 from pathlib import Path
@@ -69,7 +70,8 @@ def read_npz(path: Path) -> Fields:
             raise InputError(f"expected a saved fit, but {name!r} is not a regular file")
         with path.open("rb") as file, zipfile.ZipFile(file) as archive:
             members = archive.infolist()
-            length = path.stat().st_size
+            # Of this very file: under its name there may be another one by now.
+            length = os.fstat(file.fileno()).st_size
             # Compressed or overlapping members are how a small file can hold a large one.
             if sum(member.file_size for member in members) > length:
                 raise _Unusual("compressed, or longer than the file")

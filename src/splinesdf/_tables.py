@@ -37,7 +37,7 @@ class Arclets(NamedTuple):
 # The last three are Bernstein coefficients of degree 2 d: of the arc minus its start (x, y) and
 # of the square of its length, so that |arc - p|^2 has the coefficients
 # squares + |p - start|^2 - 2 (p - start) . (x, y). A line has 1 / its squared length in their
-# place.
+# place, or 0 if it is too short for that.
 #
 # A row of ``tree``: a segment's first point (0, 1), the vector to its second (2, 3), 1 / its
 # squared length, or 0 for a point (4), the radius around it in which all of the node's arclets
@@ -71,6 +71,9 @@ class Joints(NamedTuple):
     # Rows as in `Arclets`, up to the power basis; velocities that are rounding are zero, so that no
     # normal is taken from them.
     arcs: Floats
+    # (n, 2) the point, of those in which several branches meet, that each arclet starts and ends
+    # in; -1 for none, see `splinesdf.curves.vertices`
+    touch: Ints
 
 
 # What an arclet, or a run of an offset, is.
@@ -82,7 +85,6 @@ class Kinds(NamedTuple):
 
     kind: Ints  # (n,) FREE, STRAIGHT or ROUND
     center: Floats  # (n, 2) of a round one
-    radius: Floats  # (n,) of a round one, positive if it bends to the left
 
 
 class Trimming(NamedTuple):

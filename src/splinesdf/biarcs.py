@@ -13,14 +13,26 @@ from itertools import pairwise
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, positive
-from splinesdf.conics import Kind, classify, rounding
-from splinesdf.contour import Contour, check_tolerance, evened, halve
+from splinesdf.conics import Element, Kind, classify, elements, rounding, unfolded
+from splinesdf.contour import (
+    Contour,
+    check_tolerance,
+    evened,
+    halve,
+    smallest_tolerance,
+    to_origin,
+    unit,
+)
 
 # Arcs that meet at less than this angle (radians) are joined smoothly, to which the biarcs hold
 # exactly. Chains of conics are smooth within 1e-6; corners that a part has on purpose are far
 # above. Larger, and flat corners get rounded, though within the tolerance; smaller, and runs end
 # where rounding says so.
 _SMOOTH = 1e-5
+# This share of a tolerance is for what readers of circular arcs lose to rounding, and for the
+# chords of those so flat that they would lose more. Larger, and there are more arcs; smaller, and
+# more of the flat ones are cut into many chords.
+_FLAT_SHARE = 0.02
 # The most that an arc may turn is a quarter: beyond it cos(half) of a weight loses digits.
 _QUARTER = np.sqrt(0.5) * (1.0 - 1e-12)
 
@@ -54,6 +66,10 @@ def as_arcs(contour: Contour, *, tolerance: float) -> Contour:
     """
     check_tolerance(tolerance, contour.arcs)
     grain = rounding(contour.arcs)
+    contour = unfolded(contour)
+    # Near the origin new points are rounded less; what is there already comes back to the bit.
+    arcs, origin = to_origin(contour.arcs)
+    contour = replace(contour, arcs=arcs)
     pieces, weights, fixed = _pieces(contour, grain)
     smooth = _smooth_joints(contour.closed, pieces, grain)
     fixed &= ~_negligible(pieces, fixed, smooth, positive(tolerance, "tolerance"))
@@ -66,10 +82,37 @@ def as_arcs(contour: Contour, *, tolerance: float) -> Contour:
         chains.append((arcs, heavy))
     arcs, weights = (np.concatenate(parts) for parts in zip(*chains, strict=True))
     wide = (weights < _QUARTER) & (classify(arcs, weights, grain).kind == Kind.CIRCLE)
-    while wide.any():
+    # Halved twice, even a whole turn is four quarters.
+    for _ in range(2):
         arcs, weights = halve(arcs, weights, wide)
         wide = (weights < _QUARTER) & (classify(arcs, weights, grain).kind == Kind.CIRCLE)
-    return replace(contour, arcs=arcs, weights=weights)
+    return replace(contour, arcs=arcs + origin, weights=weights)
+
+
+def arc_elements(contour: Contour, *, tolerance: float) -> list[Element]:
+    """What a machine follows of a contour: lines and circular arcs whose centers it finds.
+
+    Parameters
+    ----------
+    contour : Contour
+    tolerance : float
+        Of it, some hundredths are left for arcs so flat that their centers are beyond reading:
+        they become chords.
+    """
+    least = smallest_tolerance(contour.arcs)
+    arcs = as_arcs(contour, tolerance=max((1.0 - _FLAT_SHARE) * tolerance, least))
+    allowed = max(_FLAT_SHARE * tolerance, least)
+    result: list[Element] = []
+    # The arcs were rounded once more, which tells on those of a few roundings: they are found
+    # with twice the grain, and what even then is neither line nor circle is no wider than that.
+    for piece in elements(arcs, 2.0 * rounding(arcs.arcs)):
+        if piece.kind not in (Kind.LINE, Kind.CIRCLE):
+            result.append(Element(Kind.LINE, piece.first, piece.count, piece.start, piece.end))
+        elif piece.is_flat(allowed):
+            result += piece.chords(allowed)
+        else:
+            result.append(piece)
+    return result
 
 
 def _pieces(contour: Contour, grain: float) -> tuple[Floats, Floats, Bools]:
@@ -107,14 +150,8 @@ def _ends(pieces: Floats) -> tuple[Floats, Floats]:
     result = []
     for legs in (pieces[:, 1] - pieces[:, 0], pieces[:, 2] - pieces[:, 1]):
         legs = np.where(np.any(legs != 0.0, axis=1)[:, None], legs, chords)
-        result.append(_unit(legs))
+        result.append(unit(legs))
     return result[0], result[1]
-
-
-def _unit(vectors: Floats) -> Floats:
-    lengths = np.hypot(vectors[..., 0], vectors[..., 1])[..., None]
-    result: Floats = vectors / np.where(lengths > 0.0, lengths, 1.0)
-    return result
 
 
 def _smooth_joints(closed: bool, pieces: Floats, grain: float) -> Bools:
@@ -161,7 +198,7 @@ def _tangents(pieces: Floats, fixed: Bools, smooth: Bools, first: int, last: int
     here = np.arange(first, last + 1)
     before, after = (here - 1) % count, here % count
     left, right = ends[before], starts[after]
-    both = _unit(left + right)
+    both = unit(left + right)
     # A joint at the run's end has another piece beside it only if it is smooth.
     joined = smooth[after]
     both[fixed[before] & joined] = left[fixed[before] & joined]

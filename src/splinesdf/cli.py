@@ -46,6 +46,7 @@ _DEMO_TOLERANCE = 1e-3
 
 def main() -> None:
     """Run the command line; bad input is one line on stderr and exit status 2."""
+    report.write_on_any_terminal()
     try:
         status = commands.main(prog_name="splinesdf", standalone_mode=False)
     except click.Abort:
@@ -76,7 +77,7 @@ def _fail(message: str) -> None:
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(ss.__version__, prog_name="splinesdf")
 def commands() -> None:
-    """Closed curves to a compact C¹ signed distance function, and to trimmed offsets.
+    """Closed curves to a compact, smooth signed distance function, and to trimmed offsets.
 
     SHAPE is a file (.svg, .json formulas, .csv or .dat points) or the name of a shape that comes
     with the package: part, gamma1, gamma2, gamma3.
@@ -186,7 +187,9 @@ def query(source: str, points: str, output: str | None, fill: str | None, close:
 
 @commands.command()
 @click.option("--tables", is_flag=True, help="Print Tables 1-7 beside the printed values.")
-@click.option("--figures", metavar="DIR", help="Draw Figures 5-12 into a folder.")
+@click.option(
+    "--figures", metavar="DIR", help="Draw Figures 5-12 into a folder: figure_05.png and so on."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the tables as JSON.")
 def paper(tables: bool, figures: str | None, as_json: bool) -> None:
     """Recompute the tables and figures of the paper that this package grew from."""
@@ -226,7 +229,7 @@ def info(file: str, fill: str | None, close: bool) -> None:
             cells=f"{len(spline.ordinates):,} ({kind})",
             domain=report.box_text(spline.domain),
             y="downward" if spline.y_down else "upward",
-            size=f"{Path(file).stat().st_size:,} bytes",
+            size=_size_of(file),
             shape="not in the file" if spline.shape is None else report.describe(spline.shape),
             **report.provenance(spline.made),
         )
@@ -239,6 +242,13 @@ def info(file: str, fill: str | None, close: bool) -> None:
             box=report.box_text(shape.box),
             y="downward" if shape.y_down else "upward",
         )
+
+
+def _size_of(file: str) -> str:
+    try:
+        return f"{Path(file).stat().st_size:,} bytes"
+    except OSError:  # it was there when it was read
+        return "no longer there"
 
 
 @commands.command()

@@ -12,15 +12,18 @@ import splinesdf as ss
 from splinesdf import report
 from splinesdf.cli_shapes import (
     check_outputs,
+    offset_tolerance_of,
     offsets_of,
     read_shape,
     shape_options,
-    tolerance_of,
     tolerance_option,
 )
+from splinesdf.depth import deepest
+from splinesdf.io.enclosed import check_sides
 from splinesdf.io.output import check_format
 from splinesdf.io.writers.options import DIRECTIONS, UNITS
 from splinesdf.io.written import measure_file
+from splinesdf.offset import deviation, least_tolerance
 from splinesdf.report import working
 
 # How much of the tolerance the offset gets; the file has the rest. DXF without --arcs is exact. In
@@ -34,6 +37,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 @click.command()
 @shape_options
 @tolerance_option
+@click.option("--coarse", is_flag=True, help="Allow a tolerance above a quarter of the distance.")
 @click.option("-d", "--distance", "distances", type=float, multiple=True, help="> 0: outward.")
 @click.option("--step", type=float, help="Inward, < 0: at STEP, 2 STEP, ... until nothing is left.")
 @click.option("-o", "--output", required=True, help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv")
@@ -50,12 +54,17 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
     type=click.Choice(DIRECTIONS),
     help="G-code: for a spindle that turns clockwise.  [default: climb]",
 )
-@click.option("--check", is_flag=True, help="Read the file back, and measure it: status 1 if off.")
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Read the file back, measure it and what it encloses: status 1 if off.",
+)
 def offset(
     shape: str,
     fill: str | None,
     close: bool,
     tolerance: float | None,
+    coarse: bool,
     distances: tuple[float, ...],
     step: float | None,
     output: str,
@@ -82,16 +91,28 @@ def offset(
     }
     suffix = check_format(output, **options)
     check_outputs(shape, output)
-    tolerance = tolerance_of(source, tolerance)
+    asked = distances if step is None else (step,)
+    tolerance = offset_tolerance_of(source, asked, tolerance, coarse=coarse)
     share = _share(suffix, arcs)
-    contours = _contours(source, distances, step, share * tolerance)
+    farthest = max(map(abs, distances), default=0.0)
+    if tolerance < (least := least_tolerance(source, farthest) / share):
+        raise ss.InputError(
+            f"expected a tolerance of at least {least:.2g} for {suffix}, above the rounding of the "
+            f"coordinates, got {tolerance:.4g}: raise it, or move the shape nearer to the origin"
+        )
+    contours = _contours(source, distances, step, tolerance, share)
     rest = (1.0 - share) * tolerance
     ss.write(output, contours, tolerance=rest if rest > 0.0 else None, **options)
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
     report.print_offsets(source, contours, distances, tolerance)
     report.print_written(output)
+    passed = _deviation(source, contours, tolerance)
     if check:
-        _check(output, source, contours, tolerance)
+        # In steps there is to be nothing left at the next one.
+        ended = () if step is None else ((len(distances) + 1) * step,)
+        passed &= _check(output, source, contours, (*distances, *ended), tolerance)
+    if not passed:
+        raise click.exceptions.Exit(1)
 
 
 def _share(suffix: str, arcs: bool) -> float:
@@ -102,29 +123,92 @@ def _share(suffix: str, arcs: bool) -> float:
 
 
 def _contours(
-    source: ss.Shape, distances: tuple[float, ...], step: float | None, tolerance: float
+    source: ss.Shape,
+    distances: tuple[float, ...],
+    step: float | None,
+    tolerance: float,
+    share: float,
 ) -> list[ss.Contour]:
     """The offsets asked for, or an error if there is none."""
-    if step is None:
-        contours = offsets_of(source, distances, tolerance)
-        listed = ", ".join(f"{d:g}" for d in distances)
-    else:
-        with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
-            contours = ss.offset(source, step=step, tolerance=tolerance)
-        listed = f"{step:g}"
+    try:
+        if step is None:
+            contours = offsets_of(source, distances, share * tolerance)
+        else:
+            with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
+                contours = ss.offset(source, step=step, tolerance=share * tolerance, coarse=True)
+    except ss.SplineSDFError as error:
+        if share < 1.0 and "tolerance" in str(error):
+            # What it names is not what was given.
+            told = f"{error} (of the tolerance {tolerance:.4g}, {share:g} is for the offset itself)"
+            error.args = (told, *error.args[1:])
+        raise
+    fitted = sorted({contour.distance for contour in contours if contour.fitted})
+    if fitted:
+        click.echo(
+            f"note: at {', '.join(f'{d:g}' for d in fitted)} the offset is the level set of a fit, "
+            f"within the tolerance, of many arcs",
+            err=True,
+        )
     if not contours:
-        raise ss.InputError(f"nothing to write: no point of the plane is at {listed}")
+        wanted = distances if step is None else (step,)
+        listed = ", ".join(f"{d:g}" for d in wanted)
+        low, high = deepest(source, -max(wanted))
+        if -max(wanted) > high:
+            raise ss.InputError(
+                f"nothing to write: no point of the plane is at {listed}, the deepest is at "
+                f"{-low:.4g}: ask for a distance nearer to the boundary"
+            )
+        _nothing(source, wanted, tolerance)
+        raise ss.InputError(
+            f"nothing to write: at {listed} is nothing wider than the tolerance {tolerance:.4g}: "
+            "lower it"
+        )
     return contours
 
 
-def _check(output: str, source: ss.Shape, contours: list[ss.Contour], tolerance: float) -> None:
-    """Measure the file; status 1 if it is not within the tolerance, or not all there."""
+def _nothing(source: ss.Shape, distances: tuple[float, ...], tolerance: float) -> None:
+    """Nothing is left only if no point is nearer than an offset would enclose."""
+    for distance in distances:
+        sides = check_sides(source, distance, [], tolerance)
+        if sides.wrong:
+            _complain(report.wrong_sides(sides))
+            raise click.exceptions.Exit(1)
+
+
+def _deviation(source: ss.Shape, contours: list[ss.Contour], tolerance: float) -> bool:
+    """Whether the contours themselves keep the tolerance, as far as they are measured."""
+    off = deviation(source, contours)
+    if not off <= tolerance:
+        _complain(
+            f"expected a deviation of at most {tolerance:.4g}, got {off:.4g}: do not use the file; "
+            "try another tolerance, or move the shape nearer to the origin"
+        )
+    return bool(off <= tolerance)
+
+
+def _check(
+    output: str,
+    source: ss.Shape,
+    contours: list[ss.Contour],
+    distances: tuple[float, ...],
+    tolerance: float,
+) -> bool:
+    """Measure the file: whether it is within the tolerance, all there, and nothing twice."""
     wanted = Counter(float(contour.distance) for contour in contours)
     with working(f"reading {Path(output).name} back"):
-        worst = measure_file(output, source, sorted(wanted))
+        worst = measure_file(output, source, sorted({*wanted, *distances}), tolerance)
     report.print_check(output, worst, tolerance)
     if worst.curves != wanted:
-        click.echo(f"splinesdf: expected curves at {dict(wanted)}, read {worst.curves}", err=True)
-        raise click.exceptions.Exit(1)
-    if not worst.deviation <= tolerance:
-        raise click.exceptions.Exit(1)
+        _complain(f"expected curves at {dict(wanted)}, read {worst.curves}")
+    if worst.gap > tolerance:
+        _complain(f"expected closed curves, got one whose ends are {worst.gap:.4g} apart")
+    if worst.points:
+        _complain(f"expected curves with an extent, got {worst.points} that are points")
+    for sides in worst.sides:
+        if sides.wrong:
+            _complain(report.wrong_sides(sides))
+    return worst.curves == wanted and worst.keeps(tolerance)
+
+
+def _complain(text: str) -> None:
+    click.echo(f"splinesdf: {text}", err=True)

@@ -11,7 +11,9 @@ from typing import Any
 import click
 
 import splinesdf as ss
+from splinesdf._arrays import positive
 from splinesdf._atomic import check_target
+from splinesdf.offset import offset_tolerance
 from splinesdf.report import working
 
 _BUILT_IN = {"part": "part.svg"} | {f"gamma{i}": f"gamma{i}.json" for i in (1, 2, 3)}
@@ -24,7 +26,9 @@ Command = Callable[..., None]
 def shape_options(command: Command) -> Command:
     """The shape and how it is read."""
     for option in (
-        click.option("--close", is_flag=True, help="Close open contours by a straight piece."),
+        click.option(
+            "--close", is_flag=True, help="Join open paths end to end, close the rest straight."
+        ),
         click.option(
             "--fill",
             type=click.Choice(["nonzero", "evenodd"]),
@@ -41,7 +45,8 @@ def tolerance_option(command: Command) -> Command:
     return click.option(
         "--tolerance",
         type=float,
-        help="Largest error, in the shape's unit. Default: 1e-3 of its larger side.",
+        help="Largest error, in the shape's unit. Default: 1e-3 of its larger side; of an offset, "
+        "1e-2 of the smallest distance at most.",
     )(command)
 
 
@@ -64,17 +69,35 @@ def check_outputs(source: str, *outputs: str | None) -> None:
         if output is None:
             continue
         check_target(output)
-        if Path(output).exists() and Path(source).exists() and Path(output).samefile(source):
+        try:
+            lost = Path(output).samefile(source)
+        except (OSError, ValueError):  # one of them does not exist
+            lost = False
+        if lost:
             raise ss.InputError(f"{output!r} is the input, it would be lost: name another file")
 
 
 def tolerance_of(shape: ss.Shape, tolerance: float | None) -> float:
     """The tolerance, or the default, which is then told."""
     if tolerance is not None:
-        return tolerance
+        return positive(tolerance, "tolerance")
     tolerance = _SHARE * shape.size
     click.echo(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given", err=True)
     return tolerance
+
+
+def offset_tolerance_of(
+    shape: ss.Shape, distances: Iterable[float], tolerance: float | None, *, coarse: bool
+) -> float:
+    """The tolerance of offsets, or the default, which is then told."""
+    found = offset_tolerance(shape, distances, tolerance, coarse=coarse)
+    if tolerance is None:
+        click.echo(
+            f"tolerance {found:.4g}: 1e-3 of the larger side, at most 1e-2 of the smallest "
+            f"distance, as none was given",
+            err=True,
+        )
+    return found
 
 
 def offsets_of(shape: ss.Shape, distances: Iterable[float], tolerance: float) -> list[ss.Contour]:
@@ -83,5 +106,5 @@ def offsets_of(shape: ss.Shape, distances: Iterable[float], tolerance: float) ->
     with working("offsetting (the first run compiles)") as say:
         for distance in distances:
             say(f"offsetting {shape.name} by {distance:g}")
-            contours += ss.offset(shape, distance, tolerance=tolerance)
+            contours += ss.offset(shape, distance, tolerance=tolerance, coarse=True)
     return contours

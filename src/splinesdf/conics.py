@@ -11,14 +11,14 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf.contour import Contour, evaluate
+from splinesdf.contour import Contour, evaluate, evaluate_each, unit
 
 _EPS = float(np.finfo(np.float64).eps)
 # Within this many ulp of the largest coordinate an arc counts as a line, a circle or a parabola:
@@ -28,6 +28,10 @@ _ROUNDING = 4.0 * _EPS
 # And this far from one line or circle arcs may lie that are merged: their ends and shoulders are
 # rounded one by one, and the circle through three of them is up to three times as uncertain.
 _MERGED = 16.0 * _EPS
+# Readers of circular arcs find a point from the center, radius and angle, each rounded: so many
+# radii are lost. Fewer, and flat arcs are read wrongly; more, and they are drawn otherwise although
+# they could be read.
+_READ = 4.0 * _EPS
 # Sweeps that add up to a full turn within this (radians) are one: each is good to a few ulp
 # unless its arc is tiny.
 _FULL_TURN = 1e-6
@@ -81,6 +85,23 @@ class Element:
         """Whether it is a full circle."""
         return self.kind is Kind.CIRCLE and abs(self.sweep) == 2.0 * math.pi
 
+    def is_flat(self, allowed: float) -> bool:
+        """Whether a reader who works from the center may miss the arc by more than this."""
+        if self.kind is not Kind.CIRCLE or self.is_full:
+            return False
+        # Nearer centers cost no more than the coordinates themselves.
+        far = self.radius > 4.0 * abs(self.end - self.start)
+        return far and _READ * self.radius > allowed
+
+    def chords(self, allowed: float) -> list[Element]:
+        """A circular arc as lines between points of it, from which it bulges no more than this."""
+        bulge = 2.0 * self.radius * math.sin(0.25 * self.sweep) ** 2
+        count = max(1, math.ceil(math.sqrt(bulge / allowed)))
+        return [
+            Element(Kind.LINE, self.first, self.count, part.start, part.end)
+            for part in self.cut([k / count for k in range(1, count)])
+        ]
+
     def parts(self, most: float) -> list[Element]:
         """A circular arc as equal ones that sweep no more than this each; a line as it is."""
         if self.kind is not Kind.CIRCLE:
@@ -95,7 +116,9 @@ class Element:
         if self.kind is Kind.LINE:
             inner = [self.start + share * (self.end - self.start) for share in shares]
         else:
-            inner = [self.center + spoke * cmath.rect(1.0, share * self.sweep) for share in shares]
+            # From the start, not from the center: that of a flat arc is so far away that its
+            # rounding is larger than the arc.
+            inner = [self.start + spoke * _turn_by(share * self.sweep) for share in shares]
         points = [self.start, *inner, self.end]
         lengths = np.diff([0.0, *shares, 1.0]).tolist()
         return [
@@ -105,6 +128,11 @@ class Element:
             )
             for k, length in enumerate(lengths)
         ]
+
+
+def _turn_by(angle: float) -> complex:
+    """What turning by an angle adds to a vector, as a share of it: without cancellation."""
+    return 2j * math.sin(0.5 * angle) * cmath.rect(1.0, 0.5 * angle)
 
 
 def rounding(arcs: Floats) -> float:
@@ -117,24 +145,19 @@ def classify(arcs: Floats, weights: Floats, grain: float | None = None) -> Conic
 
     An arc counts as the simplest kind that it is nowhere farther from than ``grain``, by default
     the rounding of its coordinates: four ulp of the largest of them all. A line that turns back
-    on itself is not a line.
+    on itself is not a line: see `unfolded`.
     """
     grain = rounding(arcs) if grain is None else grain
-    middle = 0.5 * (arcs[:, 0] + arcs[:, 2])
-    half = 0.5 * (arcs[:, 2] - arcs[:, 0])
-    a = np.hypot(half[:, 0], half[:, 1])
-    along = half / np.where(a > 0.0, a, 1.0)[:, None]
-    apart = arcs[:, 1] - middle
-    forward = np.sum(apart * along, axis=1)
-    height = along[:, 0] * apart[:, 1] - along[:, 1] * apart[:, 0]
+    a, along, forward, height = _in_frame(arcs)
     h = np.abs(height)
     # The shoulder has the share w / (1 + w) of P1, so much of P1's error comes through.
     share = weights / (1.0 + weights)
-    line = (h * share <= grain) & (np.maximum(np.abs(forward) - a, 0.0) <= grain)
+    flat = h * share <= grain
+    line = flat & (_overshoot(a, forward, weights)[0] <= grain)
     slant = np.hypot(a, h)
     cosine = np.divide(a, slant, out=np.ones_like(a), where=slant > 0.0)
     off = np.abs(share - cosine / (1.0 + cosine)) * slant
-    circle = ~line & (np.abs(forward) * share <= grain) & (off <= grain) & (a > 0.0)
+    circle = ~flat & (np.abs(forward) * share <= grain) & (off <= grain) & (a > 0.0)
     # Of weight 1 and of weight w it is two arcs that differ by half the change of the share.
     parabola = np.abs(share - 0.5) * slant <= grain
     kind = np.select(
@@ -144,20 +167,78 @@ def classify(arcs: Floats, weights: Floats, grain: float | None = None) -> Conic
     ).astype(np.int64)
     steep = np.where(circle, height, np.nan)
     normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    middle = 0.5 * (arcs[:, 0] + arcs[:, 2])
     center = middle - normal * (a * a / steep)[:, None]
     # Positive height: P1 is on the left, and the arc turns to the right.
     sweep = -2.0 * np.arctan2(steep, a)
     return Conics(kind, center, a * slant / np.abs(steep), sweep)
 
 
-def elements(contour: Contour) -> list[Element]:
+def unfolded(contour: Contour) -> Contour:
+    """The contour with each arc that is folded onto a line cut in its tip: two lines.
+
+    Folded is an arc that leaves the line through its ends by rounding only and turns back on it.
+    Nearly so, an ellipse has an axis that is all rounding, and no reader finds it again.
+    """
+    arcs, weights = contour.arcs, contour.weights
+    grain = rounding(arcs)
+    a, _, forward, height = _in_frame(arcs)
+    over, tip = _overshoot(a, forward, weights)
+    folded = (np.abs(height) * (weights / (1.0 + weights)) <= grain) & (over > grain)
+    if not folded.any():
+        return contour
+    rows = np.repeat(np.arange(len(arcs)), np.where(folded, 2, 1))
+    cut, heavy = arcs[rows], weights[rows]
+    first = np.flatnonzero(folded) + np.arange(np.count_nonzero(folded))
+    tips = evaluate_each(arcs[folded], weights[folded], tip[folded])
+    cut[first, 2] = cut[first + 1, 0] = tips
+    for lines in (first, first + 1):
+        cut[lines, 1] = 0.5 * (cut[lines, 0] + cut[lines, 2])
+        heavy[lines] = 1.0
+    return replace(contour, arcs=cut, weights=heavy)
+
+
+def _in_frame(arcs: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Half the chord, its direction, and P1 along and to the left of it, from its middle.
+
+    Of an arc that ends where it starts the direction is that to P1.
+    """
+    half = 0.5 * (arcs[:, 2] - arcs[:, 0])
+    apart = 0.5 * (arcs[:, 1] - arcs[:, 0]) + 0.5 * (arcs[:, 1] - arcs[:, 2])
+    a = np.hypot(half[:, 0], half[:, 1])
+    along = unit(np.where((a > 0.0)[:, None], half, apart))
+    forward = np.sum(apart * along, axis=1)
+    height = along[:, 0] * apart[:, 1] - along[:, 1] * apart[:, 0]
+    return a, along, forward, height
+
+
+def _overshoot(a: Floats, forward: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """How far arcs reach beyond their chords, measured along these, and at which parameter.
+
+    With e from the end to the foot of P1, beyond it, and s = t / (1 - t), the arc is at
+    2 (w e s - a) / (1 + 2 w s + s²) from the end; the largest such number is a root of a square.
+    """
+    e = np.maximum(np.abs(forward) - a, 0.0)
+    # With numbers up to 1 instead of w, so that no square overflows: u = min(w, 1), v = u / w.
+    u = np.minimum(weights, 1.0)
+    v = u / weights
+    root = np.hypot(a * v * v, np.sqrt(e) * np.sqrt(e + 2.0 * a) * u * v) + a * v * v
+    below = u * u * e + root
+    over = np.divide(u * u * e * e, below, out=np.zeros_like(e), where=below > 0.0)
+    below = root + u * v * e
+    t = np.divide(root, below, out=np.ones_like(e), where=below > 0.0)
+    return over, np.where(forward < 0.0, 1.0 - t, t)
+
+
+def elements(contour: Contour, grain: float | None = None) -> list[Element]:
     """The contour's lines, circular arcs and other conics, as few as are exact to rounding.
 
     Consecutive lines along one line and consecutive arcs of one circle are merged, in a closed
     contour also the last with the first, so the list may start in the middle of the contour's
-    first arc's element. Other conics stay one by one. Arcs without an extent are left out.
+    first arc's element. Other conics stay one by one. Arcs without an extent are left out. The
+    grain is that of `classify`.
     """
-    conics = classify(contour.arcs, contour.weights)
+    conics = classify(contour.arcs, contour.weights, grain)
     merged: list[Element] = []
     for element in _singles(contour, conics):
         together = _merge(contour, merged[-1], element) if merged else None
@@ -224,7 +305,8 @@ def _circle_through(points: np.ndarray) -> tuple[complex, float]:
     if abs(c) < abs(b):
         b, c = points[last // 3] - points[0], points[2 * last // 3] - points[0]
     cross = (b.conjugate() * c).imag
-    if cross == 0.0:
+    # Flatter than the rounding of its points, a triangle has no circle.
+    if abs(cross) <= _EPS * float(np.abs(points).max()) * abs(c):
         return complex(math.nan, math.nan), math.nan
     spoke = complex(1j * (b * abs(c) ** 2 - c * abs(b) ** 2) / (2.0 * cross))
     return complex(points[0] + spoke), abs(spoke)

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from splinesdf._arrays import Floats, positive
+from splinesdf._arrays import (
+    LARGEST,
+    Floats,
+    as_floats,
+    finite,
+    largest_coordinate,
+    positive,
+)
 from splinesdf.errors import InputError
 
+# A halving divides the sag of an arc by four, or by nearly two next to a cusp: so many are far more
+# than any tolerance above rounding takes. More change nothing; fewer would leave an arc coarse.
+_HALVINGS = 120
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
 # subdivision would go on splitting rounding noise.
 _ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
@@ -42,6 +53,11 @@ class Contour:
     parent : Contour, optional
         The contour of the same level that directly encloses this one: None for an outermost one,
         an outer one for a hole, a hole for what lies in it.
+    tolerance : float, optional
+        Of an offset: how far from its distance a point of it may be.
+    fitted : bool
+        Of an offset: it is the level set of a fit, as parallels left loose ends. It is within the
+        tolerance, but has many arcs, and none of its lines, circles and corners are exact.
     """
 
     arcs: Floats
@@ -49,9 +65,16 @@ class Contour:
     closed: bool = True
     distance: float = 0.0
     y_down: bool = False
-    parent: Contour | None = None
+    parent: Contour | None = field(default=None, repr=False)
+    tolerance: float | None = None
+    fitted: bool = False
 
     def __post_init__(self) -> None:
+        for name in ("arcs", "weights"):
+            object.__setattr__(self, name, as_floats(getattr(self, name), name))
+        object.__setattr__(self, "distance", finite(self.distance, "distance"))
+        if self.tolerance is not None:
+            object.__setattr__(self, "tolerance", positive(self.tolerance, "tolerance"))
         if self.arcs.ndim != 3 or self.arcs.shape[1:] != (3, 2) or len(self.arcs) == 0:
             raise InputError(f"expected arcs of shape (n, 3, 2), n > 0, got {self.arcs.shape}")
         if self.weights.shape != self.arcs.shape[:1]:
@@ -63,10 +86,45 @@ class Contour:
             raise InputError("expected finite control points and weights, got NaN or infinity")
         if not (self.weights > 0.0).all():
             raise InputError(f"expected positive weights, got {self.weights.min():.6g}")
+        if not ((self.weights <= LARGEST) & (self.weights >= 1.0 / LARGEST)).all():
+            raise InputError(
+                f"expected weights from {1.0 / LARGEST:g} to {LARGEST:g}, got "
+                f"{self.weights.min():.3g} to {self.weights.max():.3g}: an arc is its chord or its "
+                "legs beyond"
+            )
+        if 0.0 < largest_coordinate(self.arcs) < 1.0 / LARGEST:
+            raise InputError(
+                f"expected a coordinate of at least {1.0 / LARGEST:g}, got none above "
+                f"{np.abs(self.arcs).max():.3g}: use another unit"
+            )
         if not (self.arcs[:-1, 2] == self.arcs[1:, 0]).all():
             raise InputError("expected each arc to start exactly where the last one ended")
         if self.closed and not (self.arcs[-1, 2] == self.arcs[0, 0]).all():
             raise InputError("expected a closed contour to end exactly where it starts")
+
+    def __getstate__(self) -> tuple[dict[str, Any], tuple[Contour, ...]]:
+        """What pickle and copy take: the parent last of a few ancestors, the outermost first.
+
+        They recurse into what they have not met yet. Of n contours in one another, the parent
+        alone would take them n deep; with the ancestors at 1/2, 3/4, 7/8 ... of the depth before
+        it, whose own ancestors are then known, they go log n deep.
+        """
+        line: list[Contour] = []
+        above = self.parent
+        while above is not None:
+            line.append(above)
+            above = above.parent
+        line.reverse()
+        chosen, first = [], 0
+        while first < len(line):
+            at = (first + len(line)) // 2
+            chosen.append(line[at])
+            first = at + 1
+        return {**self.__dict__, "parent": None}, tuple(chosen)
+
+    def __setstate__(self, state: tuple[dict[str, Any], tuple[Contour, ...]]) -> None:
+        fields, ancestors = state
+        self.__dict__.update(fields, parent=ancestors[-1] if ancestors else None)
 
     def points(self, tolerance: float) -> Floats:
         """The contour as a polyline that is nowhere farther from it than the tolerance.
@@ -77,10 +135,14 @@ class Contour:
             All vertices lie on the arcs. Closed: the last one repeats the first.
         """
         check_tolerance(tolerance, self.arcs)
-        arcs, weights = self.arcs, self.weights
-        while (coarse := _sag(arcs, weights) > tolerance).any():
+        arcs, origin = to_origin(self.arcs)
+        weights = self.weights
+        for _ in range(_HALVINGS):
+            coarse = _sag(arcs, weights) > tolerance
+            if not coarse.any():
+                break
             arcs, weights = halve(arcs, weights, coarse)
-        return np.concatenate([arcs[:, 0], arcs[-1:, 2]])
+        return np.concatenate([arcs[:, 0], arcs[-1:, 2]]) + origin
 
     @property
     def length(self) -> float:
@@ -94,15 +156,14 @@ class Contour:
 
         That is counterclockwise where y points up. An open contour is closed by its chord.
         """
-        points, velocities, steps = self._quadrature()
-        # Taken about a point of the curve: far from the origin the products would cancel.
-        spokes = points - self.arcs[0, 0]
+        spokes, velocities, steps = self._quadrature()
         swept = spokes[..., 0] * velocities[..., 1] - spokes[..., 1] * velocities[..., 0]
         return float(0.5 * np.sum(swept * steps))
 
     def _quadrature(self) -> tuple[Floats, Floats, Floats]:
-        """Points, velocities and steps of a Gauss rule over all arcs."""
-        arcs, weights = evened(self.arcs, self.weights)
+        """Points as seen from the first, velocities and steps of a Gauss rule over all arcs."""
+        # Far from the origin points are rounded and products cancel; differences do not.
+        arcs, weights = evened(self.arcs - self.arcs[0, 0], self.weights)
         t = (_GAUSS_POINTS + 1.0)[:, None] / 2.0
         first, middle, last = (arcs[:, None, k] for k in range(3))
         w = weights[:, None, None]
@@ -127,6 +188,38 @@ def evaluate(arcs: Floats, weights: Floats, parameters: Floats) -> Floats:
     first, middle, last = (1.0 - t) ** 2, 2.0 * w * t * (1.0 - t), t**2
     sums = first * arcs[:, None, 0] + middle * arcs[:, None, 1] + last * arcs[:, None, 2]
     return sums / (first + middle + last)
+
+
+def evaluate_each(arcs: Floats, weights: Floats, parameters: Floats) -> Floats:
+    """One point of each arc, at its own parameter: (n, 3, 2), (n,), (n,) -> (n, 2)."""
+    t = parameters[:, None]
+    middle, last = 2.0 * weights[:, None] * t * (1.0 - t), t**2
+    total = (1.0 - t) ** 2 + middle + last
+    first = arcs[:, 0]
+    result: Floats = first + (middle * (arcs[:, 1] - first) + last * (arcs[:, 2] - first)) / total
+    return result
+
+
+def to_origin(arcs: Floats) -> tuple[Floats, Floats]:
+    """The arcs moved near to the origin, and by what to move them back, both without rounding.
+
+    Where the numbers of one axis are within a factor of two of each other, their differences are
+    exact. Where they are not, they are no larger than their differences, so nothing is to be won.
+    """
+    flat = arcs.reshape(-1, 2)
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    close = ((low > 0.0) & (high <= 2.0 * low)) | ((high < 0.0) & (low >= 2.0 * high))
+    origin = np.where(close, flat[0], 0.0)
+    return arcs - origin, origin
+
+
+def unit(vectors: Floats) -> Floats:
+    """Vectors (..., 2) made one long; zero stays zero. Right down to the tiniest numbers."""
+    largest = np.abs(vectors).max(axis=-1, keepdims=True)
+    scaled = vectors / np.where(largest > 0.0, largest, 1.0)
+    lengths = np.hypot(scaled[..., 0], scaled[..., 1])[..., None]
+    result: Floats = scaled / np.where(lengths > 0.0, lengths, 1.0)
+    return result
 
 
 def halve(arcs: Floats, weights: Floats, which: np.ndarray) -> tuple[Floats, Floats]:
@@ -192,12 +285,17 @@ def mirrored(contour: Contour) -> Contour:
 def check_tolerance(tolerance: float, arcs: Floats) -> None:
     """Refuse a tolerance that is not positive, or below the rounding of the coordinates."""
     tolerance = positive(tolerance, "tolerance")
-    smallest = _ROUNDING * float(np.abs(arcs).max())
+    smallest = smallest_tolerance(arcs)
     if tolerance < smallest:
         raise InputError(
             f"expected a tolerance of at least {smallest:.2g}, the rounding of the "
             f"coordinates, got {tolerance:.2g}: raise it, or move the shape nearer to the origin"
         )
+
+
+def smallest_tolerance(arcs: Floats) -> float:
+    """Below this, subdivision would go on splitting what is rounding."""
+    return _ROUNDING * float(np.abs(arcs).max())
 
 
 def _sag(arcs: Floats, weights: Floats) -> Floats:

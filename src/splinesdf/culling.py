@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Ints
+from splinesdf._arrays import Ints, as_floats
 from splinesdf._tables import Arclets, Candidates, Cells
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
@@ -30,7 +30,7 @@ def closest_candidates(shape: Shape, boxes: ArrayLike) -> tuple[Ints, Ints]:
     """
     from splinesdf.kernels.culling import MOST_KEPT, cull_boxes  # Numba loads only when it is used
 
-    array = np.ascontiguousarray(boxes, dtype=np.float64)
+    array = as_floats(boxes, "boxes")
     if array.ndim != 2 or array.shape[1] != 4:
         raise InputError(f"expected boxes of shape (n, 4), got shape {array.shape}")
     boundary = shape.boundary

@@ -7,13 +7,12 @@ points ─ blocks ─→ cells of a quadtree ─→ kernels.nearest (closest poi
 from __future__ import annotations
 
 import math
-from operator import index as as_whole
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Floats, Ints, as_points, positive
+from splinesdf._arrays import Floats, Ints, as_points, positive, whole
 from splinesdf._blocks import in_blocks, processors
 from splinesdf._tables import NOTHING, Arclets, Cells, Feet
 from splinesdf.culling import candidates_of_cells
@@ -44,6 +43,9 @@ _FAR = 1e20
 _AT_END = 1e-12
 # Nodes along each side of the tiles in which a grid is worked on: 130,000 points.
 _TILE = 362
+# Nodes along a side of a grid. More: squared they have no place in any memory, and their count none
+# in an index; fewer: a long strip could not be asked for.
+_MOST_NODES = 10_000_000
 
 
 class Projection(NamedTuple):
@@ -158,7 +160,7 @@ def signed_distance_grid(
         Its distances are those of `signed_distance` at these points, found quicker.
     """
     box = shape.default_domain() if domain is None else check_domain(domain)
-    columns, rows = node_count(nx), node_count(ny)
+    columns, rows = node_count(nx, "nx"), node_count(ny, "ny")
     farthest = _farthest(max_distance)
     x, y = np.linspace(box[0], box[2], columns), np.linspace(box[1], box[3], rows)
     distance = np.empty((rows, columns))
@@ -267,14 +269,11 @@ def _farthest(max_distance: float | None) -> float:
     return np.inf if max_distance is None else positive(max_distance, "max_distance")
 
 
-def node_count(count: int) -> int:
-    """How many nodes a grid has along a side: a whole number from 2, or an `InputError`."""
-    try:
-        number = as_whole(count)
-    except TypeError as error:
-        raise InputError(f"expected a number of nodes, got {count!r}") from error
+def node_count(count: int, name: str) -> int:
+    """How many nodes a grid has along a side, from 2 on, or an `InputError`."""
+    number = whole(count, f"the number of nodes {name}", least=0, most=_MOST_NODES)
     if number < 2:
-        raise InputError(f"expected at least 2 nodes each way, got {number}")
+        raise InputError(f"expected at least 2 nodes each way, got {number} for {name}")
     return number
 
 

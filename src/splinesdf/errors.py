@@ -27,3 +27,7 @@ class ToleranceNotReached(SplineSDFError):
     def __init__(self, message: str, result: Any) -> None:
         super().__init__(message)
         self.result = result
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # By itself an exception is made anew from its message alone.
+        return type(self), (*self.args, self.result), self.__dict__

@@ -2,19 +2,18 @@
 
 start ─→ quasi-interpolate ─→ bracket the error of cells that changed ─→ all good? ─ yes ─→ reached
              ↑                                                             │ no
-             └──── halve the cells around the bad quarters of bad cells ←──┘
+             └──── halve the cells around the bad quarters of bad cells ←──┴─ too many? ─→ max_cells
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from operator import index as as_whole
 from typing import Literal
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, positive
+from splinesdf._arrays import Bools, Floats, as_floats, finite, positive, shown, whole
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError, ToleranceNotReached
 from splinesdf.measure import Wanted, cell_errors, largest_error
@@ -27,7 +26,7 @@ from splinesdf.spaces.cells import center_ordinates
 from splinesdf.spline import SplineSDF
 from splinesdf.trial import GridTrial, TreeTrial, Trial
 
-Stopped = Literal["refining", "reached", "max_cells", "min_side"]
+Stopped = Literal["refining", "reached", "max_cells", "min_side", "given"]
 Band = tuple[float, float]
 
 # Cells along the domain's longer side at the start. More: cells wasted where the distance is
@@ -74,8 +73,8 @@ class FitResult:
     ----------
     spline : SplineSDF
         With the shape in ``.shape`` and these figures in ``.made``.
-    tolerance : float
-        What was asked.
+    tolerance : float or None
+        What was asked; None of `interpolate`, which is asked for none.
     error : float
         The largest |s - u| over what counts, from below: over the whole domain, or where a
         band is. With a certificate the true maximum is between it and ``bound``.
@@ -86,8 +85,9 @@ class FitResult:
         A proved upper bound of the error (docs/theory/certificate.md), not more than half a
         percent above it, but where that cannot be had; None with ``certify=False``.
     cells : int
-    stopped : {"reached", "max_cells", "min_side", "refining"}
-        Why the loop ended; "refining" in the steps before the last.
+    stopped : {"reached", "max_cells", "min_side", "refining", "given"}
+        Why the loop ended; "refining" in the steps before the last. "given": there was no loop,
+        as `interpolate` takes the mesh that it is given.
     history : tuple of FitStep
     evaluations : int
         Exact distances asked for the spline; the proof finds closest points of its own.
@@ -96,7 +96,7 @@ class FitResult:
     """
 
     spline: SplineSDF
-    tolerance: float
+    tolerance: float | None
     error: float
     centre_error: float
     bound: float | None
@@ -140,7 +140,7 @@ def fit(
     start : pair of int, optional
         Cells each way to start from; four along the longer side unless given.
     max_cells : int
-        Stop when there are more cells.
+        No result has more cells: stop when the next round would make more.
     min_side : float
         Stop when a cell that is not good enough has a side below twice this.
     certify : bool
@@ -179,14 +179,14 @@ def fit(
 
 def require_reached(result: FitResult) -> FitResult:
     """The last result of `fit_steps`, or `ToleranceNotReached` if it missed its tolerance."""
-    if result.stopped == "reached":
+    if result.stopped in ("reached", "given"):
         return result
     advice = {
         "max_cells": "raise max_cells or tolerance, or ask for a band",
         "min_side": "lower min_side or raise tolerance",
         "refining": "take the next result",
     }[result.stopped]
-    missed = ">" if result.error > result.tolerance else "is not proved to be within the"
+    missed = ">" if result.error > (result.tolerance or 0.0) else "is not proved to be within the"
     raise ToleranceNotReached(
         f"error {result.error:.3g} {missed} tolerance {result.tolerance:.3g} after {result.cells} "
         f"cells ({result.stopped}): {advice}",
@@ -217,12 +217,16 @@ def fit_steps(
     box = shape.default_domain(outward) if domain is None else check_domain(domain)
     largest = max(abs(value) for value in (*shape.box, *box))
     tolerance = positive(tolerance, "tolerance")
+    max_cells = whole(max_cells, "max_cells", least=1, most=2**63 - 1)
+    min_side = finite(min_side, "min_side")
+    if min_side < 0.0:
+        raise InputError(f"expected min_side from 0 on, got {min_side:g}")
     if tolerance <= _ROUNDING * largest:
         raise InputError(
             f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "
             f"got {tolerance:.4g}"
         )
-    trial = _first_trial(shape, space, box, start, operator)
+    trial = _first_trial(shape, space, box, _first_cells(box, start, max_cells), operator)
     wanted = Wanted(threshold=tolerance, enough=tolerance, around=True, proved=certify)
     history: tuple[FitStep, ...] = ()
     while True:
@@ -232,7 +236,9 @@ def fit_steps(
         known = trial.known
         bad = known.counts & known.over.any(axis=1)
         count = len(bad)
-        stopped = _verdict(spline.mesh, bad, count, max_cells, min_side)
+        stopped = _verdict(spline.mesh, bad, min_side)
+        if stopped == "refining" and trial.plan(np.flatnonzero(bad)) > max_cells:
+            stopped = "max_cells"
         error, bound = float(known.low[known.counts].max(initial=0.0)), None
         if stopped != "refining":
             error, bound = largest_error(shape, spline, trial.center, bands, known)
@@ -264,7 +270,7 @@ def fit_steps(
         )
         if stopped != "refining":
             return
-        trial.refine(np.flatnonzero(bad))
+        trial.refine()
 
 
 def _center_error(spline: SplineSDF, exact: Floats, bands: Floats) -> float:
@@ -280,48 +286,57 @@ def _check_bands(bands: Band | Sequence[Band] | None) -> Floats:
     """One band or several as an array (k, 2)."""
     if bands is None:
         return np.empty((0, 2))
-    try:
-        array = np.array(bands, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a band (lo, hi) or several, got {bands!r}") from error
+    array = as_floats(bands, "a band (lo, hi) or several")
     array = array.reshape(1, 2) if array.shape == (2,) else array
     if array.ndim != 2 or array.shape[1] != 2 or len(array) == 0:
-        raise InputError(f"expected a band (lo, hi) or several, got {bands!r}")
+        raise InputError(f"expected a band (lo, hi) or several, got {shown(bands)}")
     if not (np.isfinite(array).all() and np.all(array[:, 0] <= array[:, 1])):
-        raise InputError(f"expected a band with finite lo <= hi, got {bands!r}")
+        raise InputError(f"expected a band with finite lo <= hi, got {shown(bands)}")
     return array
 
 
 def _first_trial(
-    shape: Shape, space: str, box: Box, start: tuple[int, int] | None, operator: str
+    shape: Shape, space: str, box: Box, start: tuple[int, int], operator: str
 ) -> Trial:
-    width, height = box[2] - box[0], box[3] - box[1]
-    side = max(width, height) / _START
-    m, n = max(1, round(width / side)), max(1, round(height / side))
-    if start is not None:
-        m, n = _check_start(start)
     if space == "hierarchical":
-        return TreeTrial(shape, box, (m, n), operator)
+        return TreeTrial(shape, box, start, operator)
     if space in ("tensor", "uniform"):
-        return GridTrial(shape, Grid.uniform(box, m, n), operator, space == "uniform")
+        return GridTrial(shape, Grid.uniform(box, *start), operator, space == "uniform")
     raise InputError(f"expected space 'hierarchical', 'tensor' or 'uniform', got {space!r}")
+
+
+def _first_cells(box: Box, start: tuple[int, int] | None, max_cells: int) -> tuple[int, int]:
+    """Cells each way to start from, never more than ``max_cells``."""
+    if start is None:
+        width, height = box[2] - box[0], box[3] - box[1]
+        for count in range(_START, 0, -1):
+            side = max(width, height) / count
+            m, n = max(1, round(width / side)), max(1, round(height / side))
+            if m * n <= max_cells:
+                break
+    else:
+        m, n = _check_start(start)
+    if m * n > max_cells:
+        raise InputError(
+            f"expected max_cells of at least the cells to start from, got {max_cells} for {m} x {n}"
+        )
+    return m, n
 
 
 def _check_start(start: tuple[int, int]) -> tuple[int, int]:
     try:
-        m, n = (as_whole(count) for count in start)
+        m, n = start
     except (TypeError, ValueError) as error:
-        raise InputError(f"expected start as two whole numbers, got {start!r}") from error
-    if not (m > 0 and n > 0 and m * n <= _MAX_CELLS):
+        raise InputError(f"expected start as two whole numbers, got {shown(start)}") from error
+    m, n = (whole(count, "start", least=1, most=_MAX_CELLS) for count in (m, n))
+    if m * n > _MAX_CELLS:
         raise InputError(f"expected a start of 1 to {_MAX_CELLS:,} cells, got {m} x {n}")
     return m, n
 
 
-def _verdict(mesh: Mesh, bad: Bools, cells: int, max_cells: int, min_side: float) -> Stopped:
+def _verdict(mesh: Mesh, bad: Bools, min_side: float) -> Stopped:
     if not bad.any():
         return "reached"
-    if cells > max_cells:
-        return "max_cells"
     boxes = mesh.boxes[bad]
     smallest = float(np.min(boxes[:, 2:] - boxes[:, :2]))
     too_deep = isinstance(mesh, Quadtree) and (

@@ -41,6 +41,10 @@ _GLANCE, _EFFORT, _EFFORT_IN_BANDS = 100, 20_000, 2_000
 # Cells whose error is looked at together when the largest of all is sought. More: some in vain;
 # fewer: more rounds.
 _TOGETHER = 64
+# Below this share of the largest coordinate an error is not told from the rounding that the proof
+# allows for (256 units in the last place, of a coordinate and of a distance). Less: where the
+# spline is exact, seconds a cell are spent on noise; more: bounds above it are wider than need be.
+_NOISE = 2.5e-13
 # Rounding in distances and ordinates, as a share of the largest coordinate: that of the kernel.
 _GRAIN = 256 * 2.220446049250313e-16
 # Open triangles at a time: 100 MB. Beyond it they keep the bound that they have.
@@ -123,6 +127,12 @@ def cell_errors(
     over = np.stack([np.any(unsure & (k == _CORNER), axis=1) for k in range(4)], axis=1)
     counts = np.any(search.counts.reshape(-1, 8), axis=1)
     return Known(low.max(axis=1), high.max(axis=1), counts, over)
+
+
+def _largest_of(shape: Shape, spline: SplineSDF) -> float:
+    """The largest coordinate of the domain and the boundary, from where distances are computed."""
+    domain = np.array(spline.domain) - np.tile(shape.boundary.origin, 2)
+    return float(max(np.abs(domain).max(), np.abs(shape.boundary.boxes[0]).max()))
 
 
 def _enclose(
@@ -237,6 +247,8 @@ def largest_error(
 ) -> tuple[float, float]:
     """Bracket the largest error over all cells, as narrowly as `TIGHT` unless that cannot be had.
 
+    It cannot where rounding is more than `TIGHT` of the error.
+
     Parameters
     ----------
     shape : Shape
@@ -252,11 +264,12 @@ def largest_error(
     low, high : float
     """
     bands = np.empty((0, 2)) if bands is None else bands
+    noise = _NOISE * _largest_of(shape, spline)
     if known is not None and len(bands):  # what was seen may lie around a band
         known = known._replace(low=np.zeros_like(known.low))
     if known is None:
         error = np.abs(center_ordinates(spline.ordinates)[1] - center)
-        wanted = Wanted((1.0 + TIGHT) * float(error.max()))
+        wanted = Wanted((1.0 + TIGHT) * float(error.max()) + noise)
         known = cell_errors(shape, spline, np.arange(len(center)), center, bands, wanted)
     low, high = (np.where(known.counts, values, 0.0) for values in known[:2])
     # Where nothing is known from below, a glance first: most cells need no more then.
@@ -264,10 +277,11 @@ def largest_error(
     effort = most if low.any() else _GLANCE
     while True:
         largest = float(low.max(initial=0.0))
-        cells = np.flatnonzero(high > (1.0 + TIGHT) * largest)
+        enough = (1.0 + TIGHT) * largest + noise
+        cells = np.flatnonzero(high > enough)
         # The most promising first: once its error is known, few others can exceed it.
         cells = cells[np.argsort(-high[cells], kind="stable")][:_TOGETHER]
-        wanted = Wanted((1.0 + TIGHT) * largest, effort=effort)
+        wanted = Wanted(enough, effort=effort)
         found = cell_errors(shape, spline, cells, center[cells], bands, wanted)
         improved = (found.low > low[cells]) | (found.high < high[cells])
         if effort == most and not improved.any():  # or no cell was left

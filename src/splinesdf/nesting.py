@@ -47,6 +47,30 @@ def nested(contours: Sequence[Contour]) -> list[Contour]:
     return [contour for contour in result if contour is not None]
 
 
+def smallest_around(contours: Sequence[Contour]) -> list[int]:
+    """Of each contour, the row of the smallest one that encloses where it starts, or -1.
+
+    Parameters
+    ----------
+    contours : sequence of Contour
+        Of any levels. Of two that cross, at most one counts as enclosed: the smaller one.
+    """
+    areas = np.array([abs(contour.area) if contour.closed else 0.0 for contour in contours])
+    low = np.array([contour.arcs.min(axis=(0, 1)) for contour in contours])
+    high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
+    result = [-1] * len(contours)
+    for j, contour in enumerate(contours):
+        start = contour.arcs[0, 0]
+        # Of equal ones, which are the same contour twice, neither is in the other.
+        may = np.all((low <= start) & (start <= high), axis=1) & (areas > areas[j])
+        rows = np.flatnonzero(may)
+        for i in rows[np.argsort(areas[rows], kind="stable")].tolist():
+            if enclosed(contours[i], start[None])[0]:
+                result[j] = i
+                break
+    return result
+
+
 def _inside(contour: Contour, parent: Contour | None) -> Contour:
     return contour if contour.parent is parent else replace(contour, parent=parent)
 

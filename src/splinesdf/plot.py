@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Floats
+from splinesdf._arrays import Floats, as_floats, shown
 from splinesdf._atomic import atomic_file
 from splinesdf._paths import as_path
 from splinesdf.contour import Contour
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 FORMATS = (".pdf", ".png", ".svg")
 INK = "#22303c"
 INSIDE, OUTSIDE = "#0072b2", "#d55e00"
-_FILL, _MESH = "#e3e8ed", "#8c98a4"
+_FILL, FAINT = "#e3e8ed", "#8c98a4"
 _FIELD = "RdBu_r"
 # Dots an inch of PNG: a figure of eight inches is 1600 dots wide and crisp when shown at 800.
 _DPI = 200
@@ -96,16 +96,22 @@ def check_format(path: str | os.PathLike[str]) -> str:
 
 
 def plot_shape(shape: Shape, ax: Axes) -> None:
-    """Fill what the shape fills, by its fill rule, and draw its boundary.
+    """Fill what the shape fills, by its fill rule, and draw its boundary."""
+    plot_fill(shape, ax)
+    _outline(shape, ax, color=INK, linewidth=1.0)
+    ax.autoscale_view(tight=False)
 
-    The fill is where the exact distance is negative; matplotlib itself knows no even-odd rule.
+
+def plot_fill(shape: Shape, ax: Axes) -> None:
+    """Fill what the shape fills, by its fill rule.
+
+    That is where the exact distance is negative; matplotlib itself knows no even-odd rule.
     """
     _upright(ax, shape.y_down)
     x, y, _ = _lattice(shape.box, _SAMPLES)
     value = signed_distance_grid(shape, len(x), len(y), domain=shape.box).distance
     lowest = min(float(value.min()), 0.0) - shape.size
     filled = ax.contourf(x, y, value, levels=[lowest, 0.0], colors=[_FILL], zorder=0.5)
-    _outline(shape, ax, color=INK, linewidth=1.0)
     # Filled contours claim their box without a margin, which would cut the boundary's line.
     filled.sticky_edges.x.clear()
     filled.sticky_edges.y.clear()
@@ -172,16 +178,20 @@ def plot_surface(spline: SplineSDF, ax: Any) -> None:
     for contour in spline.contours(0.0):
         line = contour.points(_flatness(spline.domain))
         ax.plot(line[:, 0], line[:, 1], np.zeros(len(line)), color=INK, linewidth=1.2, zorder=2)
-    ax.set_box_aspect((np.ptp(x), np.ptp(y), np.ptp(value)), zoom=1.1)
+    ax.set_box_aspect((np.ptp(x), np.ptp(y), np.ptp(value)), zoom=1.0)
     # A distance climbs at 45 degrees: seen from higher than that no part of it hides another.
     ax.view_init(elev=52.0, azim=-60.0)
     ax.set_proj_type("ortho")
     ax.grid(visible=False)
     ax.tick_params(labelsize=8, labelcolor=INK, pad=0)
+    ax.set_xlabel("x", fontsize=8, color=INK, labelpad=-4)
+    ax.set_ylabel("y", fontsize=8, color=INK, labelpad=-4)
+    ax.set_zlabel("distance", fontsize=8, color=INK, labelpad=3)
+    ax.patch.set_visible(False)  # else it would hide the label of axes to the left
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         axis.pane.set_visible(False)
-        axis.line.set_color(_MESH)
-        axis.set_tick_params(color=_MESH)
+        axis.line.set_color(FAINT)
+        axis.set_tick_params(color=FAINT)
         axis.set_major_locator(_few_ticks(3))
     ax.zaxis.set_tick_params(pad=3)
     if spline.y_down:
@@ -189,14 +199,20 @@ def plot_surface(spline: SplineSDF, ax: Any) -> None:
 
 
 def plot_mesh(
-    spline_or_mesh: SplineSDF | Mesh, ax: Axes, *, shape: Shape | None = None
+    spline_or_mesh: SplineSDF | Mesh,
+    ax: Axes,
+    *,
+    shape: Shape | None = None,
+    diagonals: bool = False,
 ) -> LineCollection:
     """Draw the sides of the cells, each once, and the shape's boundary if it is given.
+
+    With ``diagonals`` also the two of every cell: the triangles on which the spline is quadratic.
 
     Returns
     -------
     LineCollection
-        Two segments for each cell and two that close the domain.
+        Two segments for each cell and two that close the domain; then the diagonals.
     """
     from matplotlib.collections import LineCollection
 
@@ -214,13 +230,14 @@ def plot_mesh(
             np.stack([x0, y0, x0, y1], axis=1),
             np.stack([x0, y0, x1, y0], axis=1),
             [(right, low, right, high), (left, high, right, high)],
+            *([np.stack([x0, y0, x1, y1], 1), np.stack([x0, y1, x1, y0], 1)] if diagonals else []),
         ]
     ).reshape(-1, 2, 2)
     lines = LineCollection(
         list(segments),
-        colors=_MESH,
+        colors=FAINT,
         # Thinner where there are many, or they run together.
-        linewidths=min(0.6, 15.0 / np.sqrt(len(mesh.boxes))),
+        linewidths=(0.6 if diagonals else 1.0) * min(0.6, 15.0 / np.sqrt(len(mesh.boxes))),
         capstyle="projecting",
         zorder=1.0,
         rasterized=len(segments) > _MOST_LINES,
@@ -273,6 +290,11 @@ def add_colorbar(filled: QuadContourSet, ax: Axes) -> None:
     bar = ax.figure.colorbar(filled, cax=ax.inset_axes((1.03, 0.0, 0.035, 1.0)))
     bar.outline.set_visible(False)
     bar.ax.tick_params(labelsize=8, labelcolor=INK, length=0.0)
+
+
+def plot_contours(contours: Sequence[Contour], ax: Axes, *, color: str) -> None:
+    """Draw contours in one color, and nothing else."""
+    _curves(contours, ax, color=color, linewidth=1.4)
 
 
 def _offset_lines(contours: Sequence[Contour], ax: Axes) -> None:
@@ -374,11 +396,8 @@ def _upright(ax: Axes, y_down: bool) -> None:
 
 
 def _check_levels(levels: ArrayLike) -> Floats:
-    try:
-        chosen = np.asarray(levels, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected levels as numbers, got {levels!r}") from error
+    chosen = as_floats(levels, "levels")
     increasing = chosen.ndim == 1 and len(chosen) > 1 and bool(np.all(np.diff(chosen) > 0.0))
     if not (increasing and np.isfinite(chosen).all()):
-        raise InputError(f"expected two or more increasing levels, got {levels!r}")
+        raise InputError(f"expected two or more increasing levels, got {shown(levels)}")
     return chosen

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
-from numbers import Integral, Real
+from numbers import Integral
 
+from splinesdf._arrays import finite, shown
 from splinesdf.errors import InputError
 
 SPACES = ("hierarchical", "tensor", "uniform")
@@ -23,12 +23,12 @@ def _this_version() -> str:
 
 @dataclass(frozen=True)
 class Provenance:
-    """What was asked of `fit`, what it found, and which splinesdf it was.
+    """What was asked of `fit` or `interpolate`, what it found, and which splinesdf it was.
 
     Attributes
     ----------
-    tolerance : float
-        Largest |s - u| that was asked, in the shape's unit.
+    tolerance : float or None
+        Largest |s - u| that was asked, in the shape's unit; None if the mesh was given instead.
     error : float
         Largest |s - u| that was found by a search over what counts: the whole domain, or what
         may meet the bands. In the shape's unit.
@@ -53,7 +53,7 @@ class Provenance:
         If a number is not finite or a name not known: no fit says so of itself.
     """
 
-    tolerance: float
+    tolerance: float | None
     error: float
     bound: float | None
     bands: tuple[tuple[float, float], ...]
@@ -66,7 +66,9 @@ class Provenance:
     def __post_init__(self) -> None:
         # As plain Python values, so that they are written and compared as what they are.
         keep = {
-            "tolerance": _number(self.tolerance, "tolerance", positive=True),
+            "tolerance": None
+            if self.tolerance is None
+            else _number(self.tolerance, "tolerance", positive=True),
             "error": _number(self.error, "error"),
             "bound": None if self.bound is None else _number(self.bound, "bound"),
             "bands": _bands(self.bands),
@@ -80,32 +82,27 @@ class Provenance:
             object.__setattr__(self, name, value)
 
 
-def _number(value: object, name: str, *, positive: bool = False) -> float:
+def _number(value: float, name: str, *, positive: bool = False) -> float:
     number = _finite(value, name)
     if number < 0.0 or (positive and number == 0.0):
         raise InputError(f"expected {name} {'above' if positive else 'from'} 0, got {number:g}")
     return number
 
 
-def _finite(value: object, name: str) -> float:
-    # A bool is a number to Python, and a text of digits one to float().
-    if isinstance(value, Real) and not isinstance(value, bool):
-        try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
-        if math.isfinite(number):
-            return number
-    raise InputError(f"expected a finite number for {name}, got {_shown(value)}")
+def _finite(value: float, name: str) -> float:
+    try:
+        return finite(value, name)
+    except InputError as error:
+        raise InputError(f"expected a finite number for {name}, got {shown(value)}") from error
 
 
 def _bands(value: object) -> tuple[tuple[float, float], ...]:
     bands = []
     if not isinstance(value, (tuple, list)):
-        raise InputError(f"expected bands as pairs (lo, hi), got {_shown(value)}")
+        raise InputError(f"expected bands as pairs (lo, hi), got {shown(value)}")
     for pair in value:
         if not isinstance(pair, (tuple, list)) or len(pair) != 2:
-            raise InputError(f"expected bands as pairs (lo, hi), got {_shown(pair)}")
+            raise InputError(f"expected bands as pairs (lo, hi), got {shown(pair)}")
         low, high = (_finite(end, "a band") for end in pair)
         if low > high:
             raise InputError(f"expected a band with lo <= hi, got ({low:g}, {high:g})")
@@ -115,26 +112,18 @@ def _bands(value: object) -> tuple[tuple[float, float], ...]:
 
 def _one_of(value: object, name: str, known: tuple[str, ...]) -> str:
     if not (isinstance(value, str) and value in known):
-        raise InputError(f"expected {name} to be one of {', '.join(known)}, got {_shown(value)}")
+        raise InputError(f"expected {name} to be one of {', '.join(known)}, got {shown(value)}")
     return value
 
 
 def _text(value: object, name: str) -> str:
     if not isinstance(value, str):
-        raise InputError(f"expected a text for {name}, got {_shown(value)}")
+        raise InputError(f"expected a text for {name}, got {shown(value)}")
     return value
 
 
 def _count(value: object) -> int:
     whole = isinstance(value, Integral) and not isinstance(value, bool)
     if not (whole and 0 <= value < 2**63):  # type: ignore[operator]
-        raise InputError(f"expected a count of evaluations, got {_shown(value)}")
+        raise InputError(f"expected a count of evaluations, got {shown(value)}")
     return int(value)  # type: ignore[call-overload, no-any-return]
-
-
-def _shown(value: object) -> str:
-    """A value for a message: one line, not all of a long one."""
-    try:
-        return ascii(value)[:60]
-    except ValueError:  # an integer of thousands of digits
-        return type(value).__name__

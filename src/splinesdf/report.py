@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import codecs
+import io
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -10,8 +13,10 @@ import numpy as np
 
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
+from splinesdf.depth import deepest
 from splinesdf.errors import MissingExtraError
 from splinesdf.fit import FitResult
+from splinesdf.io.enclosed import Sides
 from splinesdf.io.written import Worst
 from splinesdf.meshes import Box
 from splinesdf.offset import deviation
@@ -20,7 +25,32 @@ from splinesdf.provenance import Provenance
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.measure import Measurement
+    from rich.table import Table
     from rich.text import Text
+
+# Columns of a terminal that no table of ours reaches: it is measured as if there were so many.
+_WIDEST = 100_000
+# How signs that the reports use are written where there is only ASCII.
+_IN_ASCII = str.maketrans({"×": "x", "¹": "1", "²": "2", "–": "-", "…": "..."})
+
+
+def write_on_any_terminal() -> None:
+    """Make standard output write what its encoding lacks: our signs in ASCII, others as escapes.
+
+    What it lacks may be ×, a letter in a file's name, or a byte of one that is no letter at all.
+    """
+    codecs.register_error("splinesdf", _in_ascii)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="splinesdf")
+
+
+def _in_ascii(error: UnicodeError) -> tuple[str | bytes, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    signs = error.object[error.start : error.end]
+    return signs.translate(_IN_ASCII).encode("ascii", "backslashreplace").decode(), error.end
 
 
 @contextmanager
@@ -30,7 +60,8 @@ def working(text: str) -> Iterator[Callable[[str], None]]:
     Yields what changes the text.
     """
     console = _console(stderr=True)
-    with console.status(_plain(text)) as status:
+    spinner = "line" if console.options.ascii_only else "dots"
+    with console.status(_plain(text), spinner=spinner) as status:
         yield lambda text: status.update(_plain(text))
 
 
@@ -39,9 +70,12 @@ def print_pairs(**pairs: str) -> None:
     from rich.table import Table
 
     table = Table.grid(padding=(0, 2))
+    table.add_column(no_wrap=True, min_width=max(map(len, pairs)))
+    table.add_column()
     for name, value in pairs.items():
         table.add_row(name.replace("_", " "), _plain(value))
-    _console().print(table, highlight=False)
+    console = _console()
+    _wide_enough(console, _measured(console, table).minimum).print(table, highlight=False)
 
 
 def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
@@ -53,7 +87,7 @@ def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
         shape=describe(shape),
         method=method,
         domain=box_text(result.spline.domain),
-        tolerance=f"{result.tolerance:.4g}",
+        tolerance=_asked(result.tolerance),
         error=f"{result.error:.4g} (largest |s - u| {where})",
         bound="not asked for" if result.bound is None else f"{result.bound:.4g} (proved)",
         centre_error=f"{result.centre_error:.4g} (at cell centers only, as in the paper)",
@@ -71,13 +105,17 @@ def provenance(made: Provenance | None) -> dict[str, str]:
     return {
         "method": f"{made.space}, {made.operator}",
         "kept": f"at distances of {bands}" if bands else "over the whole domain",
-        "tolerance": f"{made.tolerance:.4g}",
+        "tolerance": _asked(made.tolerance),
         "error": f"{made.error:.4g} (largest |s - u| found)",
         "bound": "none was asked for" if made.bound is None else f"{made.bound:.4g} (proved)",
         "stopped": made.stopped,
         "evaluations": f"{made.evaluations:,} exact distances",
         "made_by": f"splinesdf {made.version}",
     }
+
+
+def _asked(tolerance: float | None) -> str:
+    return "none was asked for" if tolerance is None else f"{tolerance:.4g}"
 
 
 def fit_figures(result: FitResult, shape: Shape, *, seconds: float) -> dict[str, Any]:
@@ -113,7 +151,8 @@ def print_offsets(
     shape: Shape, contours: Sequence[Contour], distances: Iterable[float], tolerance: float
 ) -> None:
     """One line for each distance: loops, arcs, length, and how far off they are, measured."""
-    table = _table(f"offsets of {shape.name}, tolerance {tolerance:.4g}")
+    _print_line(f"offsets of {shape.name}, tolerance {tolerance:.4g}")
+    table = _table()
     for name in ("distance", "loops", "arcs", "length", "deviation"):
         table.add_column(name, justify="right")
     for distance in dict.fromkeys(distances):
@@ -123,9 +162,15 @@ def print_offsets(
             str(len(here)),
             f"{sum(len(contour.arcs) for contour in here):,}",
             f"{sum(contour.length for contour in here):.6g}",
-            f"{deviation(shape, here):.3g}" if here else "nothing is left",
+            f"{deviation(shape, here):.3g}" if here else _why_nothing(shape, distance),
         )
-    _console().print(table)
+    _print_table(table)
+
+
+def _why_nothing(shape: Shape, distance: float) -> str:
+    """Why there is no contour at a distance: no such point, or none that the tolerance shows."""
+    gone = distance < 0.0 and deepest(shape, -distance)[1] < -distance
+    return "nothing is left" if gone else "nothing as wide as the tolerance"
 
 
 def print_check(path: str, worst: Worst, tolerance: float) -> None:
@@ -135,19 +180,37 @@ def print_check(path: str, worst: Worst, tolerance: float) -> None:
         check=f"{path}, read back: {sum(worst.curves.values())} curves",
         worst=f"{worst.deviation:.4g} from the distance {worst.distance:+g}",
         at=f"({x!r}, {y!r}), as in the file",
+        sides=f"{sum(s.asked for s in worst.sides):,} points asked, "
+        f"{sum(s.wrong for s in worst.sides):,} on the wrong side",
         verdict=f"within the tolerance {tolerance:.4g}"
-        if worst.deviation <= tolerance
+        if worst.keeps(tolerance)
         else f"NOT within the tolerance {tolerance:.4g}",
+    )
+
+
+def wrong_sides(sides: Sides) -> str:
+    """What curves of one distance have lost, have twice, or have the wrong way around."""
+    x, y = sides.point
+    parts = (
+        (sides.lost, "nearer, but not enclosed (a contour is lost, or there twice)"),
+        (sides.spurious, "farther, but enclosed (a hole is lost, or a contour there twice)"),
+        (sides.turned, "enclosed by contours that run the wrong way around"),
+    )
+    found = ", ".join(f"{count} {text}" for count, text in parts if count)
+    return (
+        f"at distance {sides.distance:+g}, of {sides.asked:,} points {found}: "
+        f"the worst at ({x:.9g}, {y:.9g}), {sides.apart:.3g} from where a contour should be"
     )
 
 
 def print_tables(rows: Iterable[Row]) -> None:
     """The paper's tables: computed, printed, and the true error."""
-    table = _table("Tables 1-7: error at cell centers, the printed one, and the true error")
+    _print_line("Tables 1-7: error at cell centers, the printed one, and the true error")
+    table = _table()
     for name in ("table", "curve", "mesh", "operator"):
         table.add_column(name)
     for name in ("k", "m × n", "error", "printed", "true error"):
-        table.add_column(name, justify="right", no_wrap=True)
+        table.add_column(name, justify="right")
     last = None
     for row in rows:
         if last not in (None, row.table):
@@ -164,9 +227,11 @@ def print_tables(rows: Iterable[Row]) -> None:
             _printed(row),
             f"{row.true_error:.4e}",
         )
-    table.caption = "* the printed digits are not the computed ones, rounded"
-    table.caption_justify = "left"
-    _console(least=90).print(table)
+    _print_table(table)
+    _print_line(
+        "* the printed digits are not the computed ones, rounded: table 2, V, k = 3 has a wrong "
+        "exponent; table 2, W, k = 0 is cut off and not rounded; table 6, k = 4 is 2 % too small"
+    )
 
 
 def _printed(row: Row) -> str:
@@ -180,7 +245,7 @@ def _printed(row: Row) -> str:
 def print_written(*paths: str | None) -> None:
     """The files that were written."""
     for path in filter(None, paths):
-        _console().print(f"written   {path}", highlight=False, markup=False, soft_wrap=True)
+        _print_line(f"written   {path}")
 
 
 def describe(shape: Shape) -> str:
@@ -205,13 +270,35 @@ def box_text(box: Box) -> str:
     return f"[{xmin:.6g}, {xmax:.6g}] × [{ymin:.6g}, {ymax:.6g}]"
 
 
-def _table(title: str) -> Any:
+def _table() -> Table:
     from rich.box import SIMPLE
     from rich.table import Table
 
-    return Table(
-        title=_plain(title, "table.title"), title_justify="left", box=SIMPLE, pad_edge=False
-    )
+    return Table(box=SIMPLE, pad_edge=False)
+
+
+def _print_line(text: str) -> None:
+    """A line as it is, however narrow the terminal: names of files must come out in one piece."""
+    _console().print(_plain(text), highlight=False, soft_wrap=True)
+
+
+def _print_table(table: Table) -> None:
+    """A table as wide as it is, however narrow the terminal: numbers must not be cut."""
+    console = _console()
+    _wide_enough(console, _measured(console, table).maximum).print(table)
+
+
+def _measured(console: Console, table: Table) -> Measurement:
+    """The least width at which no word is cut, and the one at which no line is broken."""
+    from rich.measure import Measurement
+
+    return Measurement.get(console, console.options.update(max_width=_WIDEST), table)
+
+
+def _wide_enough(console: Console, width: int) -> Console:
+    from rich.console import Console
+
+    return console if console.width >= width else Console(width=width)
 
 
 def _plain(text: str, style: str = "") -> Text:
@@ -221,15 +308,11 @@ def _plain(text: str, style: str = "") -> Text:
     return Text("".join(c if c.isprintable() else " " for c in text), style)
 
 
-def _console(*, stderr: bool = False, least: int = 0) -> Console:
+def _console(*, stderr: bool = False) -> Console:
     try:
         from rich.console import Console
     except ImportError as error:
         raise MissingExtraError(
             'the command line needs rich: python -m pip install "splinesdf[cli]"'
         ) from error
-    console = Console(stderr=stderr)
-    if console.width < least and not console.is_terminal:
-        # A file has no width: rows must not be cut to that of an imagined terminal.
-        return Console(stderr=stderr, width=least)
-    return console
+    return Console(stderr=stderr)

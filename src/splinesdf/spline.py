@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Bools, Floats, Ints, as_points
+from splinesdf._arrays import Bools, Floats, Ints, as_floats, as_points
 from splinesdf._blocks import in_blocks, processors
 from splinesdf.contour import Contour
 from splinesdf.curves.shape import Shape
@@ -82,6 +82,10 @@ class SplineSDF:
     made: Provenance | None = None
 
     def __post_init__(self) -> None:
+        ordinates = as_floats(self.ordinates, "ordinates")
+        if ordinates.ndim != 2 or ordinates.shape[1] != 8:
+            raise InputError(f"expected ordinates of shape (n_cells, 8), got {ordinates.shape}")
+        object.__setattr__(self, "ordinates", ordinates)
         if self.shape is None:
             return
         name, y_down = self.name or self.shape.name, self.y_down or self.shape.y_down
@@ -127,8 +131,8 @@ class SplineSDF:
         _check_outside(outside)
         box = self.domain if domain is None else check_domain(domain)
         x, y = (
-            np.linspace(box[0], box[2], node_count(nx)),
-            np.linspace(box[1], box[3], node_count(ny)),
+            np.linspace(box[0], box[2], node_count(nx, "nx")),
+            np.linspace(box[1], box[3], node_count(ny, "ny")),
         )
         if len(x) * len(y) < _NODES * len(self.ordinates):
             nodes = np.stack(np.meshgrid(x, y), axis=-1)

@@ -63,12 +63,18 @@ class Trial(Protocol):
     def learn(self, cells: Ints, errors: Known) -> None:
         """Remember what was found out about some cells."""
 
-    def refine(self, bad: Ints) -> None:
-        """Halve cells, and what else must be so that they get better."""
+    def plan(self, bad: Ints) -> int:
+        """Plan to halve cells, and what else must be so that they get better: the cells then."""
+
+    def refine(self) -> None:
+        """Do what was planned."""
 
 
 class GridTrial:
     """On a tensor grid; whatever is refined, all cells change."""
+
+    _mesh: Grid
+    _planned: Grid  # the next one
 
     def __init__(self, shape: Shape, mesh: Grid, operator: str, whole: bool) -> None:
         self._shape, self._operator, self._whole = shape, operator, whole
@@ -90,20 +96,25 @@ class GridTrial:
         for mine, theirs in zip(self._known, errors, strict=True):
             mine[cells] = theirs
 
-    def refine(self, bad: Ints) -> None:
-        """Halve every row and column with a bad cell, or all."""
+    def plan(self, bad: Ints) -> int:
+        """Plan to halve every row and column with a bad cell, or all: the cells then."""
         mesh = self._mesh
         if self._whole:
-            mesh = mesh.halve()
+            self._planned = mesh.halve()
         else:
             marked = np.zeros(len(mesh.boxes), dtype=np.bool_)
             marked[bad] = True
             marked = marked.reshape(mesh.shape)
-            mesh = mesh.insert(np.any(marked, axis=1), np.any(marked, axis=0))
-        self._interpolate(mesh)
+            self._planned = mesh.insert(np.any(marked, axis=1), np.any(marked, axis=0))
+        m, n = self._planned.shape
+        return m * n
+
+    def refine(self) -> None:
+        """Do what was planned."""
+        self._interpolate(self._planned)
 
     def _interpolate(self, mesh: Grid) -> None:
-        self._mesh = mesh
+        self._mesh = self._planned = mesh
         shape = self._shape
         found = quasi_interpolate(self._distance, mesh, self._operator)
         self.spline = SplineSDF(mesh, found.ordinates, shape=shape)
@@ -134,7 +145,7 @@ class TreeTrial:
         self.evaluations = 0
         nodes = roots(start)
         every = np.arange(len(nodes.level))
-        self._nodes = nodes
+        self._nodes = self._planned = nodes
         self._centers = self._ask(nodes.level, nodes.place + 0.5)
         self._corners = np.full(len(every), np.nan)
         if operator == "W":
@@ -161,10 +172,15 @@ class TreeTrial:
         for mine, theirs in zip(self._known, errors, strict=True):
             mine[self._cells[cells]] = theirs
 
-    def refine(self, bad: Ints) -> None:
-        """Halve the 2 x 2 cells around the corner at each bad quarter of bad cells."""
+    def plan(self, bad: Ints) -> int:
+        """Plan to halve the 2 x 2 cells around the corner at each bad quarter of bad cells."""
+        self._planned = refined(self._nodes, self._cells[bad], self.known.over[bad])
+        return len(leaves(self._planned))
+
+    def refine(self) -> None:
+        """Do what was planned."""
         before = len(self._nodes.level)
-        self._nodes = nodes = refined(self._nodes, self._cells[bad], self.known.over[bad])
+        self._nodes = nodes = self._planned
         count = len(nodes.level) - before
         self._values = np.concatenate([self._values, np.full(count, np.nan)])
         self._ordinates = np.concatenate([self._ordinates, np.full((count, 8), np.nan)])

@@ -32,9 +32,10 @@ _BENT = 2.0
 # Halvings after which a piece is taken as it is. Only pieces that shrink to a point (cusps, where
 # the chord vanishes as fast as the bulge) get there; the kernel is exact on them all the same.
 _HALVINGS = 12
-# Nor is anything cut that is smaller than this share of the largest coordinate. Smaller: next to a
-# cusp of a short piece, directions of what is cut off are rounding.
-_SMALLEST = 1e-8
+# Nor is anything cut that is smaller than this share of its piece, or, for rounding, the second one
+# of the largest coordinate. Smaller: next to a cusp directions of what is cut off are rounding;
+# larger: curves far from the origin are not cut, and not understood.
+_SMALLEST, _LOST = 1e-8, 1e-12
 # Halvings to bracket each turn; two turns closer than 2^-40 of a piece are one, to rounding.
 _TURN_HALVINGS = 40
 # A step between control points below this share of the largest coordinate is rounding: the x of a
@@ -148,7 +149,10 @@ def _rows(degree: Ints, start: Floats, end: Floats, power: Floats, bernstein: Fl
         table = bernstein[chosen, :, : 2 * d + 1].reshape(-1, 3 * (2 * d + 1))
         rows[chosen, 5 + 2 * d : 5 + 2 * d + table.shape[1]] = table
     line = degree == 1
-    rows[line, 7] = 1.0 / np.sum(power[line, 1] ** 2, axis=1)
+    squared = np.sum(power[line, 1] ** 2, axis=1)
+    # So short that the inverse would overflow: its first point is as good as any other.
+    point = squared < np.finfo(np.float64).tiny
+    rows[line, 7] = np.where(point, 0.0, 1.0 / np.where(point, 1.0, squared))
     return rows
 
 
@@ -187,6 +191,8 @@ def _cut(arcs: Arcs, largest: float) -> Arcs:
     if arcs.control.shape[1] == 2:
         return arcs
     noise = _NO_STEP * float(np.maximum(np.abs(arcs.start), np.abs(ends(arcs))).max())
+    own = np.zeros(int(arcs.piece.max()) + 1)
+    own[arcs.piece] = np.ptp(arcs.control, axis=1).max(axis=1)
     arcs = _near_slow_ends(arcs)
     for axis in (0, 1):
         arcs = _split_turns(arcs, axis, noise)
@@ -199,7 +205,7 @@ def _cut(arcs: Arcs, largest: float) -> Arcs:
     for _ in range(_HALVINGS):
         size = np.ptp(arcs.control, axis=1).max(axis=1)
         thick = (_bulge(arcs.control) > _BULGE) | (_most_bent(arcs.control) > _BENT)
-        thick &= size > _SMALLEST * largest
+        thick &= size > np.maximum(_SMALLEST * own[arcs.piece], _LOST * largest)
         done.append(_take(arcs, ~thick))
         arcs = split(_take(arcs, thick), 0.5)
         if len(arcs.control) == 0:
@@ -308,7 +314,11 @@ def _most_bent(arcs: Floats) -> Floats:
     """The largest curvature times the length of the chord."""
     low, high, _ = curvature_ranges(arcs)
     chord = arcs[:, -1] - arcs[:, 0]
-    return np.asarray(np.maximum(high, -low) * np.hypot(chord[:, 0], chord[:, 1]))
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    # One that comes back to its start is bent, however long: infinite times zero is no number.
+    return np.where(length > 0.0, np.maximum(high, -low), np.inf) * np.where(
+        length > 0.0, length, 1.0
+    )
 
 
 def _tables(arcs: Arcs, most: int) -> tuple[Floats, Floats, Floats, Floats]:

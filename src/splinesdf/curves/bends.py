@@ -21,11 +21,12 @@ from splinesdf.curves.geometry import end_tangents
 # Equal parts of an arclet that are bounded one by one. More: closer ranges where the parameter's
 # speed varies; each costs once, when the shape is first fitted.
 _PARTS = 4
-# An arclet whose speed at an end is below this share of the largest coordinate, as in a cusp, or a
-# straight one that is shorter, has directions that are half rounding: nothing is claimed of it.
-# Smaller: proofs rest on directions that are wrong by 1e-16 over this; larger: more small arclets
-# whose neighborhoods need a closer look.
-_SLOW, _SHORT = 2e-7, 1e-8
+# An arclet whose speed at an end is below this share of its piece, as in a cusp, or a straight one
+# that is shorter, has directions that are half rounding: nothing is claimed of it. Nor of one below
+# the third share of the drawing, which is what rounding leaves of ends. Smaller: proofs rest on
+# directions that are wrong by 1e-16 over this; larger: more small arclets whose neighborhoods need
+# a closer look.
+_SLOW, _SHORT, _LOST = 2e-7, 1e-8, 1e-11
 _UNKNOWN = (-np.inf, np.inf, np.inf, np.inf, np.inf)
 # Bounds are widened by this share of the largest terms that went into them, against rounding.
 _SLACK = 1e-12
@@ -37,6 +38,7 @@ def bends(arclets: Arclets) -> Bends:
     count = len(degree)
     curvature = np.zeros((count, 5))
     largest = float(np.abs(arclets.boxes[0]).max())
+    own = _piece_sizes(arclets)
     for d in np.unique(degree):
         rows = np.flatnonzero(degree == d)
         power = arclets.power[rows, 1 : d + 1]
@@ -44,7 +46,8 @@ def bends(arclets: Arclets) -> Bends:
             curvature[rows] = _curvatures(control_points(arclets.power[rows, : d + 1]))
         steps = np.stack([power[:, 0], np.sum(np.arange(1, d + 1)[:, None] * power, axis=1)])
         speed = np.hypot(steps[..., 0], steps[..., 1]).min(axis=0)
-        curvature[rows[speed < (_SLOW if d > 1 else _SHORT) * largest]] = _UNKNOWN
+        least = np.maximum((_SLOW if d > 1 else _SHORT) * own[rows], _LOST * largest)
+        curvature[rows[speed < least]] = _UNKNOWN
     leaving, arriving = (
         vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
         for vectors in end_tangents(arclets)
@@ -54,6 +57,16 @@ def bends(arclets: Arclets) -> Bends:
     previous[arclets.following[linked]] = linked
     rows = np.concatenate([curvature, leaving, arriving, _extents(arclets, degree)], axis=1)
     return Bends(np.ascontiguousarray(rows), _second_differences(arclets, degree), previous)
+
+
+def _piece_sizes(arclets: Arclets) -> Floats:
+    """Half the size of each arclet's piece, as far as it is there: (n,)."""
+    count = int(arclets.piece.max()) + 1
+    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+    for points in (arclets.start, arclets.end):
+        np.minimum.at(low, arclets.piece, points)
+        np.maximum.at(high, arclets.piece, points)
+    return np.asarray(0.5 * (high - low).max(axis=1)[arclets.piece])
 
 
 def _second_differences(arclets: Arclets, degree: Ints) -> Floats:

@@ -12,7 +12,7 @@ from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import Arcs, Runs, assemble, ends, split
 from splinesdf.curves.crossings import control_points, degrees
-from splinesdf.curves.geometry import tangents_at
+from splinesdf.curves.geometry import points_at, tangents_at
 from splinesdf.curves.parts import MERGE, Parts, cut_at_crossings
 from splinesdf.curves.sides import bounding, look_at_sides
 from splinesdf.errors import InputError
@@ -22,6 +22,9 @@ from splinesdf.errors import InputError
 # slits and gaps of that width are closed; smaller: contours drawn twice are not recognized, and
 # what lies inside would attract the distance.
 _TOUCHING = 64 * 2.220446049250313e-16
+# Chains longer than this many times what counts as one point have their ends moved to where others
+# end. Smaller: a chain might shrink to a point.
+_LONG = 8.0
 
 
 def filled_boundary(outline: Arclets, evenodd: bool, largest: float) -> Arclets:
@@ -49,7 +52,8 @@ def filled_boundary(outline: Arclets, evenodd: bool, largest: float) -> Arclets:
         rule, other = ("evenodd", "nonzero") if evenodd else ("nonzero", "evenodd")
         raise InputError(
             f"the contours fill nothing under the rule {rule!r}: they are traced to and fro, or "
-            f"twice; draw each once, or try fill={other!r}"
+            f"twice, or nowhere wider than the rounding of their coordinates, {touching:.2g}; draw "
+            f"each once, or try fill={other!r}"
         )
     if keep.all() and left.all() and parts.closed.all():
         return outline
@@ -61,6 +65,8 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
     label = np.cumsum(keep) - 1
     kept = keep[parts.chain]
     degree = degrees(outline)
+    meeting = _meeting_points(outline, parts, keep, 2.0 * MERGE * touching)
+    last = np.diff(parts.chain, append=-1) != 0
     groups, labels, places = [], [], []
     for d in np.unique(degree[parts.arclet[kept]]):
         rows = np.flatnonzero(kept & (degree[parts.arclet] == d))
@@ -75,17 +81,66 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         arcs.start[turned] = np.where(whole[:, None], outline.end[arclet], ends(arcs))[turned]
         arcs.control[turned] = arcs.control[turned, ::-1]
         arcs.interval[turned] = arcs.interval[turned, ::-1]
+        # What meets in one point does so to the bit.
+        chain, side = parts.chain[rows], turned.astype(np.int64)
+        begins = np.flatnonzero(np.where(turned, last[rows], parts.place[rows] == 0))
+        arcs.start[begins] = meeting[side[begins], chain[begins]]
+        stops = np.flatnonzero(np.where(turned, parts.place[rows] == 0, last[rows]))
+        arcs.control[stops, -1] += meeting[1 - side[stops], chain[stops]] - ends(arcs)[stops]
         groups.append(arcs)
         labels.append(label[parts.chain[rows]])
         places.append(np.where(turned, -parts.place[rows], parts.place[rows]))
     runs = Runs(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
     boundary = assemble(groups, runs, outline.origin)
+    open_end = np.flatnonzero(boundary.following < 0)
+    chain = np.flatnonzero(keep)[boundary.run[open_end]]
+    boundary.end[open_end] = meeting[left[chain].astype(np.int64), chain]
+    boundary.arcs[open_end, 1:3] = boundary.end[open_end]
     # Pairs of kept chains that were drawn one after the other with the inside on the same side.
     follows = parts.following
     drawn = np.flatnonzero(keep & keep[follows] & (left == left[follows]) & ~parts.closed)
     first = np.where(left[drawn], drawn, follows[drawn])
     second = np.where(left[drawn], follows[drawn], drawn)
     return _stitch(boundary, label[first], label[second], 2.0 * MERGE * touching)
+
+
+def _meeting_points(outline: Arclets, parts: Parts, keep: Bools, near: float) -> Floats:
+    """Where chains start and end as they were drawn, one point for all that meet: (2, n, 2).
+
+    Those of chains that are dropped or no longer than a few times ``near`` stay where they are.
+    """
+    first = np.flatnonzero(parts.place == 0)
+    last = np.append(first[1:], len(parts.chain)) - 1
+    points = np.stack(
+        [
+            points_at(outline, parts.arclet[first], parts.interval[first, 0]),
+            points_at(outline, parts.arclet[last], parts.interval[last, 1]),
+        ]
+    )
+    middle = parts.arclet[(first + last) // 2]
+    reach = np.maximum(
+        np.hypot(*(outline.start[middle] - points[0]).T),
+        np.hypot(*(points[1] - points[0]).T),
+    )
+    joined = keep & ~parts.closed & (reach > _LONG * near)
+    if not joined.any():
+        return points
+    some = points[:, joined].reshape(-1, 2)
+    group = _groups(some, near)
+    _, representative = np.unique(group, return_index=True)
+    points[:, joined] = some[representative][group].reshape(2, -1, 2)
+    return points
+
+
+def _groups(points: Floats, near: float) -> Ints:
+    """Number points so that those nearer to one another than ``near`` have one number."""
+    group = np.zeros(len(points), dtype=np.int64)
+    for axis in (0, 1, 0, 1):
+        order = np.lexsort((points[:, axis], group))
+        apart = np.diff(points[order, axis], prepend=-np.inf) > near
+        apart |= np.diff(group[order], prepend=-1) != 0
+        group[order] = np.cumsum(apart) - 1
+    return group
 
 
 def _restrict(arcs: Arcs, interval: Floats) -> Arcs:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf._arrays import Floats
+from splinesdf._arrays import Floats, finite, shown
 from splinesdf.errors import InputError
 
 # Generous for a formula that a person wrote, and small enough that parsing cannot take long.
@@ -134,7 +134,9 @@ def parse_curve(x: str, y: str, t: tuple[float | str, float | str]) -> Parametri
     try:
         first, last = t
     except (TypeError, ValueError) as error:
-        raise InputError(f"expected the range of t as a pair (start, stop), got {t!r}") from error
+        raise InputError(
+            f"expected the range of t as a pair (start, stop), got {shown(t)}"
+        ) from error
     start, stop = _number(first), _number(last)
     if not start < stop:
         raise InputError(f"expected a range of t with start < stop, got {start:g} to {stop:g}")
@@ -148,15 +150,7 @@ def _number(value: float | str) -> float:
         if not isinstance(node, float):
             raise InputError(f"the range of t cannot depend on t itself: {_short(value)}")
         return node
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(
-            f"expected a number or formula for the range of t, got {value!r}"
-        ) from error
-    if not math.isfinite(number):
-        raise InputError(f"expected a finite range of t, got {number}")
-    return number
+    return finite(value, "range of t")
 
 
 def _parse(text: str) -> _Node:

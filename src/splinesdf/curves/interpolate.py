@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Bools, Floats, as_points, largest_coordinate
+from splinesdf._arrays import NOTHING, Bools, Floats, as_points, largest_coordinate
 from splinesdf.curves.nodes import DEGREE, NODES, SAMPLES, TO_CHECKS, TO_CONTROL
 from splinesdf.errors import InputError
 
@@ -177,8 +177,10 @@ def _check_progress(intervals: Floats, good: Bools, count: int, narrowest: float
 
 def _split(intervals: Floats, error: Floats, tolerance: float, scale: float) -> Floats:
     """Each interval in as many equal parts as its error asks for."""
-    foreseen = np.ceil(_FORESIGHT * (error / tolerance) ** (1.0 / (DEGREE + 1)))
-    parts = np.where(error < _FORESEEN * scale, np.clip(foreseen, 2, _MOST_PARTS), 2).astype(int)
+    resolved = error < _FORESEEN * scale
+    times = np.where(resolved, error, 0.0) / max(tolerance, np.finfo(np.float64).tiny)
+    foreseen = np.ceil(_FORESIGHT * times ** (1.0 / (DEGREE + 1)))
+    parts = np.where(resolved, np.clip(foreseen, 2, _MOST_PARTS), 2).astype(int)
     result = []
     for count in np.unique(parts):
         chosen = intervals[parts == count]
@@ -309,8 +311,11 @@ def _distinct(points: ArrayLike) -> Floats:
     if not np.isfinite(corners).all():
         raise InputError("expected finite points, got NaN or infinity")
     largest_coordinate(corners)
+    near = NOTHING * float(np.ptp(corners, axis=0).max(initial=0.0))
+    some = np.any(np.abs(corners - np.roll(corners, 1, axis=0)) > near, axis=1)
+    # A single place is left if there is no other.
+    corners = corners[some] if some.any() else corners[:1]
     count = len(np.unique(corners, axis=0))
-    corners = corners[np.any(corners != np.roll(corners, 1, axis=0), axis=1)]
     if count < 3:
         raise InputError(f"expected at least 3 distinct points, got {count}")
     return corners

@@ -10,6 +10,7 @@ from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Arclets, Joints
 from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import angles, derivatives_at, points_at
+from splinesdf.curves.vertices import Vertices
 
 # A velocity at an end below the first, as a share of the largest coordinate, and below the second,
 # as a share of what the next derivative is good for, is rounding: the arclet stands still there.
@@ -23,18 +24,28 @@ CUSP = 1e-3
 _ARCLETS = 24
 # Steps to the nearest point of the other branch; arclets are nearly straight.
 _STEPS = 8
-# Branches that are no farther apart than this share of the largest coordinate are so by rounding.
-_APART = 16 * 2.220446049250313e-16
+# Branches that are no farther apart than this share of the largest coordinate are so by rounding,
+# or were cut there where they count as touching (64 ulp, see `boundary`).
+_APART = 512 * 2.220446049250313e-16
 # Rounding in a velocity, as a share of the largest coordinate; over its length, in its direction:
 # turns within that are none. Larger: real corners are rounded off over 1e-15 of the size.
 _DIRECTION = 16 * 2.220446049250313e-16
+# Pieces of a higher degree than this are compiled: they agree with their curve to 4 ulp, and their
+# velocities at the ends to the square of the degree times as much, which is this factor.
+_DRAWN, _COMPILED = 3, 32.0
 # Where one piece of the shape was cut it does not turn; tangents of very short arclets differ by
 # less than this (radians), for rounding. Larger: corners of nearly cusps might be taken for it.
 _CUT = 1e-5
 
 
-def joints(boundary: Arclets) -> Joints:
-    """Loops, turns and tangents of a boundary."""
+def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
+    """Loops, turns and tangents of a boundary, seen from inside or outside where it touches itself.
+
+    Seen from either side the same arclets make up different loops.
+    """
+    following = boundary.following.copy()
+    following[vertices.ends] = vertices.outside if outside else vertices.inside
+    boundary = boundary._replace(following=following)
     boundary = boundary._replace(following=_closed(boundary))
     order, loops = cycles(boundary.following)
     sizes = np.diff(loops)
@@ -43,6 +54,7 @@ def joints(boundary: Arclets) -> Joints:
     place[order] = np.column_stack([np.arange(len(order)) - first, first, np.repeat(sizes, sizes)])
     arcs, vectors = _standing(boundary)
     lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in vectors]
+    _lead_on(boundary.following, vectors, lengths)
     leaving, arriving = (
         vector / length[:, None] for vector, length in zip(vectors, lengths, strict=True)
     )
@@ -54,8 +66,10 @@ def joints(boundary: Arclets) -> Joints:
     cut &= boundary.piece == boundary.piece[boundary.following]
     cut &= np.abs(turn) < _CUT
     rounding = _DIRECTION * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
+    noise = np.where(degrees(boundary) > _DRAWN, _COMPILED * rounding, rounding)
     next_length = lengths[0][boundary.following]
-    none = cut | (np.abs(turn) < rounding * (1.0 / lengths[1] + 1.0 / next_length))
+    next_noise = noise[boundary.following]
+    none = cut | (np.abs(turn) < noise / lengths[1] + next_noise / next_length)
     turn[none] = 0.0
     # Both have the tangent of the one that knows it better.
     later = np.flatnonzero(none & (lengths[1] >= next_length))
@@ -68,7 +82,24 @@ def joints(boundary: Arclets) -> Joints:
     for undecided in cusps[side == 0.0]:
         _close_up(turn, early + late, int(undecided), order, loops)
     tangents = np.concatenate([leaving, arriving], axis=1)
-    return Joints(order, loops, place, boundary.following, turn, tangents, turning, arcs)
+    return Joints(
+        order, loops, place, boundary.following, turn, tangents, turning, arcs, vertices.touch
+    )
+
+
+def _lead_on(following: Ints, vectors: list[Floats], lengths: list[Floats]) -> None:
+    """Give what rounding has left without extent the direction of what follows it.
+
+    So all of a corner in such a place is where it is reached, and none is lost.
+    """
+    for _ in range(len(following)):  # a row of them takes as many rounds as it is long
+        points = np.flatnonzero((lengths[0] == 0.0) | (lengths[1] == 0.0))
+        if len(points) in (0, len(following)):
+            break
+        after = following[points]
+        vector, length = vectors[0][after], lengths[0][after]
+        for k in (0, 1):
+            vectors[k][points], lengths[k][points] = vector, length
 
 
 def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
@@ -176,7 +207,7 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
     one, the inside is between them, and the tip points outward.
     """
     result = np.zeros(len(arclet))
-    noise = _APART * float(np.abs(boundary.boxes[0]).max())
+    noise = _APART * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
     previous = np.empty_like(boundary.following)
     previous[boundary.following] = np.arange(len(previous))
     before, after = arclet.copy(), boundary.following[arclet]

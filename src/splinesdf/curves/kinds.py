@@ -13,60 +13,81 @@ from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import FREE, ROUND, STRAIGHT, Arclets, Kinds
 from splinesdf.curves.geometry import points_at
 
-# Points of a straight or round arclet may be off by this share of the largest coordinate, for
+# Points of a straight or round piece may be off by this share of the largest coordinate, for
 # rounding and compilation (4 ulp). Larger: curves that only look like circles lose their own
 # shape by as much; smaller: circles are not recognized, and come back as several conics.
 _OFF = 32 * 2.220446049250313e-16
-# Two centers of one circle, found on short arclets, may differ by this share of size and radius.
-_CENTERS_APART = 1e-9
-# Arclets below this share of the largest coordinate are straight and round alike.
-_SHORT = 1e-6
+# A circle with a radius above this many times the length of its piece is no circle: its center is
+# all rounding. Larger: offsets are joined about centers that are off; smaller: flat arcs come back
+# as conics, within the tolerance.
+_FLATTEST = 1e6
 # Where an arclet is looked at, the middle one in the middle. A piece has several arclets as a rule,
 # and all of them must be on one circle, so that few points do.
 _INSIDE = np.array([0.25, 0.5, 0.75])
 
 
 def kinds(boundary: Arclets) -> Kinds:
-    """Kind of every arclet, and center and signed radius of the round ones."""
-    count = len(boundary.start)
+    """Kind of every arclet, and the center of the round ones."""
+    piece, count = boundary.piece, int(boundary.piece.max()) + 1
     # Rounding and compilation left what they did before the origin was moved.
-    largest = float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
-    every = np.repeat(np.arange(count), len(_INSIDE))
-    inside = points_at(boundary, every, np.tile(_INSIDE, count)).reshape(count, -1, 2)
-    chord = boundary.end - boundary.start
+    rounding = _OFF * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
+    every = np.repeat(np.arange(len(piece)), len(_INSIDE))
+    inside = points_at(boundary, every, np.tile(_INSIDE, len(piece))).reshape(-1, 3, 2)
+    looked = np.concatenate([boundary.start[:, None], inside, boundary.end[:, None]], axis=1)
+    first, middle, last = _three_points(boundary, count)
+    chord = last - first
     length = np.hypot(chord[:, 0], chord[:, 1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ahead = chord / length[:, None]
-        apart = inside - boundary.start[:, None]
-        across = ahead[:, None, 0] * apart[..., 1] - ahead[:, None, 1] * apart[..., 0]
-        straight = np.abs(across).max(axis=1) <= _OFF * largest
-        # The circle through both ends and the point in the middle, from its sagitta.
-        middle = 0.5 * (boundary.start + boundary.end)
-        sagitta = across[:, len(_INSIDE) // 2]
-        along = np.sum((inside[:, len(_INSIDE) // 2] - middle) * ahead, axis=1)
-        # that point is not quite above the middle of the chord
-        height = (along**2 + sagitta**2 - 0.25 * length**2) / (2.0 * sagitta)
-        left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
-        center = middle + height[:, None] * left
-        radius = -np.sign(sagitta) * np.hypot(*(center - boundary.start).T)
-        off = np.hypot(*np.moveaxis(inside - center[:, None], 2, 0)) - np.abs(radius)[:, None]
-        scale = largest + np.abs(radius)
-        curved = np.abs(off).max(axis=1) <= _OFF * scale
-    # What was cut off just beside a turn of x or y has no radius of its own.
-    short = length <= _SHORT * largest
-    straight = _of_pieces(straight | short, boundary.piece)
-    curved = _of_pieces((curved & np.isfinite(radius)) | short, boundary.piece) & ~straight
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        # Rounding in a center grows with the square of radius over length.
-        unsure = _CENTERS_APART * scale + _OFF * scale * (radius / length) ** 2
-    unsure = np.where(short, np.inf, unsure)
-    curved &= _one_center(center, radius, length, unsure, boundary.piece)
-    center, radius = _averages(center, radius, length, boundary.piece, curved)
+        ahead = chord / length[:, None]
+        x, y = _along_and_across(looked, first[piece, None], ahead[piece, None])
+        straight = np.abs(y).max(axis=1) <= rounding
+        # The circle through three points, by how far others are off it. Written without its radius
+        # and center, which are lost to rounding where it is flat.
+        long = length[piece, None]
+        mx, my = (v[piece, None] for v in _along_and_across(middle, first, ahead))
+        square, power = x * (x - long) + y * y, mx * (mx - long) + my * my
+        off = (my * square - power * y) / np.hypot(power, my * long)
+        curved = np.abs(off).max(axis=1) <= rounding
+        height = (power / (2.0 * my))[:, 0]
+        radius = np.hypot(height, 0.5 * long[:, 0])
+        curved &= radius <= _FLATTEST * long[:, 0]
+        left = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
+        center = (0.5 * (first + last))[piece] + height[:, None] * left[piece]
+    straight = _of_pieces(straight, piece)
+    curved = _of_pieces(curved, piece) & ~straight
     kind = np.where(straight, STRAIGHT, np.where(curved, ROUND, FREE))
-    return Kinds(
-        kind,
-        np.where(curved[:, None], center, np.nan),
-        np.where(curved, radius, np.nan),
+    return Kinds(kind, np.where(curved[:, None], center, np.nan))
+
+
+def _three_points(boundary: Arclets, count: int) -> tuple[Floats, Floats, Floats]:
+    """The first and the last point of what is left of every piece, and one between: (count, 2)."""
+    low, high = boundary.interval.min(axis=1), boundary.interval.max(axis=1)
+    first, last, between = (np.zeros(count, dtype=np.int64) for _ in range(3))
+    order = np.argsort(low, kind="stable")[::-1]
+    first[boundary.piece[order]] = order
+    order = np.argsort(high, kind="stable")
+    last[boundary.piece[order]] = order
+    middle = 0.5 * (low[first] + high[last])
+    away = np.abs(0.5 * (low + high) - middle[boundary.piece])
+    order = np.argsort(-away, kind="stable")
+    between[boundary.piece[order]] = order
+    # Backward pieces have their intervals backward, too.
+    turned = boundary.interval[:, 0] > boundary.interval[:, 1]
+    begin = np.where(turned[:, None], boundary.end, boundary.start)
+    end = np.where(turned[:, None], boundary.start, boundary.end)
+    share = np.clip((middle - low[between]) / (high - low)[between], 0.0, 1.0)
+    # One at the very end says nothing.
+    share = np.where((share > 0.1) & (share < 0.9), share, 0.5)
+    share = np.where(turned[between], 1.0 - share, share)
+    return begin[first], points_at(boundary, between, share), end[last]
+
+
+def _along_and_across(points: Floats, start: Floats, ahead: Floats) -> tuple[Floats, Floats]:
+    """Coordinates of points along a direction and to the left of it."""
+    apart = points - start
+    return (
+        apart[..., 0] * ahead[..., 0] + apart[..., 1] * ahead[..., 1],
+        ahead[..., 0] * apart[..., 1] - ahead[..., 1] * apart[..., 0],
     )
 
 
@@ -75,30 +96,3 @@ def _of_pieces(flags: np.ndarray, piece: Ints) -> np.ndarray:
     bad = np.zeros(int(piece.max()) + 1, dtype=np.bool_)
     bad[piece[~flags]] = True
     return np.asarray(~bad[piece])
-
-
-def _one_center(
-    center: Floats, radius: Floats, length: Floats, unsure: Floats, piece: Ints
-) -> np.ndarray:
-    """Whether all arclets of an arclet's piece have the circle of the longest one."""
-    circle = np.column_stack([np.where(np.isfinite(center), center, 0.0), np.nan_to_num(radius)])
-    longest = np.zeros(int(piece.max()) + 1, dtype=np.int64)
-    order = np.argsort(length, kind="stable")
-    longest[piece[order]] = order
-    apart = np.abs(circle - circle[longest[piece]]).max(axis=1)
-    return _of_pieces(apart <= unsure, piece)
-
-
-def _averages(
-    center: Floats, radius: Floats, length: Floats, piece: Ints, chosen: np.ndarray
-) -> tuple[Floats, Floats]:
-    """One circle for all arclets of a piece: a center's error falls with the square of the arc."""
-    known = chosen & np.isfinite(radius) & np.isfinite(center).all(axis=1)
-    weight = np.where(known, length**2, 0.0)
-    total = np.bincount(piece, weight)
-    sums = [
-        np.bincount(piece, weight * np.where(known, column, 0.0)) for column in (*center.T, radius)
-    ]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        x, y, r = (column / total for column in sums)
-    return np.column_stack([x, y])[piece], r[piece]

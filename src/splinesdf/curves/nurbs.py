@@ -10,7 +10,6 @@ Everything up to the spans is convex combinations of control points, so nothing 
 from __future__ import annotations
 
 import math
-import operator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import SupportsIndex
@@ -18,7 +17,16 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import LARGEST, Floats, Ints, as_points, largest_coordinate
+from splinesdf._arrays import (
+    LARGEST,
+    Floats,
+    Ints,
+    as_floats,
+    as_points,
+    largest_coordinate,
+    shown,
+    whole,
+)
 from splinesdf.curves.interpolate import compile_curve
 from splinesdf.errors import InputError
 
@@ -200,20 +208,16 @@ def _control(control: ArrayLike) -> Floats:
 
 
 def _degree(degree: SupportsIndex) -> int:
-    try:
-        number = operator.index(degree)
-    except TypeError as error:
-        raise InputError(f"expected a degree as an integer, got {degree!r}") from error
-    if not 1 <= number <= _HIGHEST:
-        raise InputError(f"expected a degree from 1 to {_HIGHEST}, got {number}")
-    return number
+    if isinstance(degree, float) or not hasattr(type(degree), "__index__"):
+        raise InputError(f"expected a degree as an integer, got {shown(degree)}")
+    return whole(degree, "degree", least=1, most=_HIGHEST)
 
 
 def _weights(weights: ArrayLike | None, count: int) -> Floats:
     """The weights as shares of the largest, so that no product with them overflows."""
     if weights is None:
         return np.ones(count)
-    array = _numbers(weights, "weights")
+    array = as_floats(weights, "weights")
     if array.shape != (count,):
         raise InputError(
             f"expected one weight for each of {count} control points, got shape {array.shape}"
@@ -268,7 +272,7 @@ def _periodic_knots(knots: ArrayLike | None, count: int, degree: int) -> Floats:
 
 def _checked_knots(knots: ArrayLike, degree: int) -> Floats:
     """Knots that are finite, in order, and repeated degree + 1 times at most."""
-    array = _numbers(knots, "knots")
+    array = as_floats(knots, "knots")
     if array.ndim != 1 or len(array) < 2:
         raise InputError(f"expected a row of knots, got shape {array.shape}")
     if not np.isfinite(array).all():
@@ -289,10 +293,3 @@ def _checked_knots(knots: ArrayLike, degree: int) -> Floats:
             f"{times[most]} times"
         )
     return array
-
-
-def _numbers(values: ArrayLike, what: str) -> Floats:
-    try:
-        return np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected {what} as numbers, got {str(values)[:40]!r}") from error

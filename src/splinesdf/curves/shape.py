@@ -10,7 +10,7 @@ from typing import Literal, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Floats, Ints, as_points
+from splinesdf._arrays import Floats, Ints, as_points, finite, whole
 from splinesdf._tables import Arclets, Bends, Joints, Kinds
 from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.bends import bends
@@ -23,12 +23,16 @@ from splinesdf.curves.loops import closed_loops
 from splinesdf.curves.nurbs import nurbs_pieces
 from splinesdf.curves.repeats import drawn_once, repeats_note
 from splinesdf.curves.svg_path import parse_path
+from splinesdf.curves.vertices import Vertices, vertices
 from splinesdf.errors import InputError
 
 Fill = Literal["nonzero", "evenodd"]
 
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
+# Samples a piece in `Shape.sample`. More: no picture shows them, and a slip of the pen takes all
+# memory; fewer: a circle of one piece could look like a polygon.
+_MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +66,9 @@ class Shape:
     y_down: bool = False
     name: str = ""
     notes: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "control", as_points(self.control))
 
     @classmethod
     def from_pieces(
@@ -282,7 +289,7 @@ class Shape:
     def default_domain(self, beyond: float = 0.0) -> tuple[float, float, float, float]:
         """The box grown by a tenth of the size, and by ``beyond``, on all sides."""
         xmin, ymin, xmax, ymax = self.box
-        margin = _MARGIN * self.size + beyond
+        margin = _MARGIN * self.size + finite(beyond, "beyond")
         return xmin - margin, ymin - margin, xmax + margin, ymax + margin
 
     @cached_property
@@ -309,8 +316,19 @@ class Shape:
 
     @cached_property
     def joints(self) -> Joints:
-        """How the arcs of the boundary follow one another, made on first use."""
-        return joints(self.boundary)
+        """How the arcs of the boundary follow one another around the inside, made on first use."""
+        return joints(self.boundary, self._vertices, outside=False)
+
+    @cached_property
+    def joints_outside(self) -> Joints:
+        """How they do around the outside, which differs where the boundary touches itself."""
+        if not len(self._vertices.ends):
+            return self.joints
+        return joints(self.boundary, self._vertices, outside=True)
+
+    @cached_property
+    def _vertices(self) -> Vertices:
+        return vertices(self.boundary)
 
     @cached_property
     def kinds(self) -> Kinds:
@@ -319,6 +337,7 @@ class Shape:
 
     def piece(self, index: int) -> Floats:
         """Control points of one piece, shape (degree + 1, 2)."""
+        index = whole(index, "index", least=0, most=self.piece_count - 1)
         return self.control[self.starts[index] : self.starts[index + 1]]
 
     def sample(self, count: int) -> list[Floats]:
@@ -329,6 +348,7 @@ class Shape:
         list of ndarray, shape (n, 2)
             For pictures and rough work: the last point repeats the first.
         """
+        count = whole(count, "count", least=1, most=_MOST_SAMPLES)
         parameters = np.linspace(0.0, 1.0, count, endpoint=False)
         result = []
         for first, last in zip(self.loops[:-1], self.loops[1:], strict=True):

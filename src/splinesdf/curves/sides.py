@@ -117,7 +117,13 @@ def bounding(outline: Arclets, parts: Parts, sides: Sides, touching: float) -> t
         if thin or length < _SHORTEST_SLIT * size:
             tip[run], left[run] = True, left[before]
     keep &= ~_repeated(outline, parts, sides, keep, touching)
-    return keep | tip, left
+    keep |= tip
+    # The ends of a sliver that is closed: its sides are gone, they would be left alone.
+    short = ~parts.closed & (sides.length <= MERGE * touching)
+    previous = np.empty(len(keep), dtype=np.int64)
+    previous[parts.following] = np.arange(len(keep))
+    alone = short & ~(keep[parts.following] | keep[previous])
+    return keep & ~alone, left
 
 
 def _doubtful_runs(

@@ -9,7 +9,7 @@ import numpy as np
 
 from splinesdf._atomic import write_text
 from splinesdf._paths import as_path
-from splinesdf.contour import Contour, box, check_tolerance
+from splinesdf.contour import Contour, box, check_tolerance, smallest_tolerance
 from splinesdf.errors import InputError
 from splinesdf.io.writers import WRITERS
 from splinesdf.io.writers.options import Milling, Options, check_options
@@ -47,7 +47,7 @@ def write(
     contours : iterable of Contour
     tolerance : float, optional
         How far the file may be from the contours, where it is not exact. Default: 1e-6 of the
-        larger side of the contours' box.
+        larger side of the contours' box, or the rounding of the coordinates if that is more.
     arcs : bool
         DXF and SVG: only lines and circular arcs, as G-code always has (see `as_arcs`).
     units : {"mm", "inch"}, optional
@@ -72,7 +72,8 @@ def write(
         raise InputError("expected contours with an extent, got a single point")
     every = np.concatenate([chain.arcs for chain in chains])
     if tolerance is None:
-        tolerance = _DEFAULT_TOLERANCE * size
+        # Of a small contour far from the origin, that is below what its coordinates hold.
+        tolerance = max(_DEFAULT_TOLERANCE * size, smallest_tolerance(every))
     check_tolerance(tolerance, every)
     options = Options(float(tolerance), bool(arcs), units, milling)
     write_text(path, WRITERS[suffix](chains, options))

@@ -1,7 +1,8 @@
 """A file of contours read back, by other code than wrote it, and measured against the distance.
 
 DXF by ezdxf, SVG by the reader of path data, G-code by an interpreter of its own, the others as
-points ─→ `Curve`s ─→ the worst point: dense samples, then ever closer around the worst
+points ─→ `Curve`s ─┬─→ the worst point: dense samples, then ever closer around the worst
+                    └─→ what they enclose, all those of a distance together (`enclosed`)
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -27,6 +28,7 @@ from splinesdf.curves.shape import Shape, evaluate_bezier
 from splinesdf.curves.svg_path import parse_path
 from splinesdf.distance import signed_distance
 from splinesdf.errors import InputError
+from splinesdf.io.enclosed import Sides, check_sides, flattened
 from splinesdf.io.writers.options import GCODE
 
 # Samples on each segment, and around each suspect in each of the rounds that zoom in by four: the
@@ -36,6 +38,8 @@ _SAMPLES = 12
 _ROUNDS = 6
 # Suspects: the highest samples, as the highest bump need not have the highest sample.
 _SUSPECTS = 64
+# A curve no larger than so many units in the last place of its coordinates is a point.
+_ULPS = 64.0
 
 
 @dataclass(frozen=True)
@@ -64,15 +68,32 @@ class Worst:
         Of which curve.
     curves : dict of float to int
         How many curves there are at each distance.
+    gap : float
+        The largest way between the ends of a curve, all of which should be closed.
+    points : int
+        How many curves have no extent, but for rounding: what is left where an offset was lost.
+    sides : tuple of Sides
+        For each distance, whether what is nearer is what the curves enclose; points in the file's
+        own coordinates.
     """
 
     deviation: float
     point: tuple[float, float]
     distance: float
     curves: dict[float, int]
+    gap: float
+    points: int
+    sides: tuple[Sides, ...]
+
+    def keeps(self, tolerance: float) -> bool:
+        """Whether all of it is within a tolerance, closed, and encloses what it should."""
+        near = self.deviation <= tolerance and self.gap <= tolerance
+        return near and not self.points and not any(sides.wrong for sides in self.sides)
 
 
-def measure_file(path: str | os.PathLike[str], shape: Shape, distances: Sequence[float]) -> Worst:
+def measure_file(
+    path: str | os.PathLike[str], shape: Shape, distances: Sequence[float], tolerance: float
+) -> Worst:
     """Read a file of contours back and measure it against the exact distance to the shape.
 
     Parameters
@@ -81,33 +102,70 @@ def measure_file(path: str | os.PathLike[str], shape: Shape, distances: Sequence
     shape : Shape
         What the contours are offsets of.
     distances : sequence of float
-        What the contours stand for: WKT has no place for it, so there each curve counts for the
-        nearest of these.
+        What the contours stand for, those at which nothing should be left included: WKT has no
+        place for it, so there each curve counts for the nearest of these.
+    tolerance : float
+        How far points must be from the level for their side of the curves to count.
 
     Raises
     ------
     InputError
         If the file cannot be read or holds no curve.
     """
-    file = as_path(path)
-    suffix = file.suffix.lower()
-    curves = list(_READERS[suffix](file))
+    curves = curves_in(path)
+    suffix = as_path(path).suffix.lower()
     if not curves:
         raise InputError(f"{os.fspath(path)}: expected at least one curve, found none")
     # y points up in DXF and G-code and down in SVG; the others hold it as the shape has it.
     flip = shape.y_down if suffix in GCODE | {".dxf"} else suffix == ".svg" and not shape.y_down
     sides = np.array([1.0, -1.0 if flip else 1.0])
-    worst = Worst(-1.0, (math.nan, math.nan), math.nan, {})
+    worst, where, gap = (-1.0, math.nan), (math.nan, math.nan), 0.0
+    no_extent = 0
+    lines: dict[float, list[Floats]] = {}
     for curve in curves:
         level = curve.distance
         if math.isnan(level):
             first = float(signed_distance(shape, curve.at(np.zeros(1)) * sides)[0])
             level = float(distances[int(np.argmin(np.abs(np.asarray(distances) - first)))])
-        worst.curves[level] = worst.curves.get(level, 0) + 1
+        line = flattened(curve.at, curve.count, tolerance)
+        lines.setdefault(level, []).append(line * sides)
+        gap = max(gap, math.dist(line[0], line[-1]))
+        no_extent += float(np.ptp(line, axis=0).max()) <= _ULPS * np.spacing(np.abs(line).max())
         found, point = _worst_of(curve, level, shape, sides)
-        if not found <= worst.deviation:
-            worst = Worst(found, point, level, worst.curves)
-    return worst
+        if not found <= worst[0]:
+            worst, where = (found, level), point
+    checked = [
+        check_sides(
+            shape, level, lines.get(level, []), tolerance, _turn(as_path(path), level, flip)
+        )
+        for level in dict.fromkeys([*map(float, distances), *lines])
+    ]
+    return Worst(
+        *(worst[0], where, worst[1]),
+        {level: len(some) for level, some in lines.items()},
+        gap,
+        int(no_extent),
+        tuple(replace(c, point=(c.point[0], c.point[1] * sides[1])) for c in checked),
+    )
+
+
+def _turn(file: Path, distance: float, flip: bool) -> int:
+    """Which way around, in the shape's coordinates, curves are to run; 0 if it does not matter."""
+    suffix = file.suffix.lower()
+    if suffix == ".geojson":
+        return 1  # RFC 7946: outer rings from x to y, holes the other way
+    if suffix not in GCODE:
+        return 0
+    # What stays is the shape if the way is around it; climb milling has it on the right.
+    climb = re.search(r"^\(within .* climb milling\)", file.read_text("utf-8"), re.MULTILINE)
+    left = (distance < 0.0) == (climb is not None)
+    return 1 if left != flip else -1
+
+
+def curves_in(path: str | os.PathLike[str]) -> list[Curve]:
+    """The curves of a file that `write` made, in the file's own coordinates."""
+    file = as_path(path)
+    return list(_READERS[file.suffix.lower()](file))
 
 
 def _worst_of(
@@ -205,9 +263,21 @@ def _read_dxf(file: Path) -> Iterator[Curve]:
     entities: Any = readfile(file).modelspace()
     for entity in entities:
         distance = float(entity.dxf.layer.removeprefix("distance_"))
-        parts = entity.virtual_entities() if entity.dxftype() == "LWPOLYLINE" else [entity]
-        pieces = [piece for part in parts for piece in _dxf_pieces(part)]
-        yield _joined(distance, pieces)
+        polyline = entity.dxftype() == "LWPOLYLINE"
+        yield _joined(distance, _polyline_pieces(entity) if polyline else _dxf_pieces(entity))
+
+
+def _polyline_pieces(entity: Any) -> list[Callable[[Floats], Floats]]:
+    """Lines and arcs in the direction of the polyline; a bulge is the tangent of a quarter arc."""
+    rows = [(complex(x, y), bulge) for x, y, bulge in entity.get_points("xyb")]
+    pieces: list[Callable[[Floats], Floats]] = []
+    for (start, bulge), (end, _) in pairwise([*rows, *rows[:1]] if entity.closed else rows):
+        if bulge == 0.0:
+            pieces.append(partial(_on_line, start, end))
+            continue
+        center = 0.5 * (start + end) + 0.25j * (end - start) * (1.0 / bulge - bulge)
+        pieces += _arc(start, end, center, 4.0 * math.atan(bulge))
+    return pieces
 
 
 def _dxf_pieces(entity: Any) -> list[Callable[[Floats], Floats]]:
@@ -270,15 +340,22 @@ def _read_gcode(file: Path) -> Iterator[Curve]:
 def _turned(
     start: complex, end: complex, spoke: complex, clockwise: bool
 ) -> list[Callable[[Floats], Floats]]:
-    """An arc in four parts, its radius going evenly from that of the start to that of the end."""
+    """An arc about where the spoke from its start leads."""
     center = start + spoke
-    first, last = abs(spoke), abs(end - center)
     low = math.atan2(-spoke.imag, -spoke.real)
     sweep = (math.atan2((end - center).imag, (end - center).real) - low) % (2.0 * math.pi)
     sweep = sweep - 2.0 * math.pi if clockwise else sweep
     if start == end:
         sweep = -2.0 * math.pi if clockwise else 2.0 * math.pi
+    return _arc(start, end, center, sweep)
 
+
+def _arc(
+    start: complex, end: complex, center: complex, sweep: float
+) -> list[Callable[[Floats], Floats]]:
+    """An arc in four parts, its radius going evenly from that of the start to that of the end."""
+    spoke = start - center
+    first, last, low = abs(spoke), abs(end - center), math.atan2(spoke.imag, spoke.real)
     turn, growth = 0.25 * sweep, 0.25 * (last - first)
     return [
         partial(_on_circle, center, (first + k * growth, growth), low + k * turn, turn)

@@ -28,6 +28,9 @@ _TURN = 1.9
 _POINTS, _POINTS_EACH = 10, 3
 # The longest step between them, as a share of the chord.
 _STRIDE = 0.15
+# A curve that is longer than so many chords is no arc that turns by less than `_TURN`, which is at
+# most 1.72 of them: the sides of its triangle.
+_LONGEST = 1.8
 # Between those points the error may be this much larger.
 _SAFE = 0.9
 # Where a run bends by less than this (radians) from end to end it is straight: rounding decides
@@ -140,7 +143,7 @@ def look(
     chord: float,
     points: Floats,
 ) -> int:
-    """Fill points of a part of a run, the last one its end; how many, -1 for too many.
+    """Fill points of a part of a run, the last one its end; how many, -1 if it is far too long.
 
     Where a short arclet turns fast its parallel is long, so that steps are bounded along both.
     """
@@ -150,8 +153,9 @@ def look(
     step = (high - place) / (finer * max(_POINTS, _POINTS_EACH * each))
     longest = _STRIDE * chord / finer
     count = 0
+    length_so_far = 0.0
     while place < high:
-        if count == points.shape[0]:
+        if count == points.shape[0] or length_so_far > _LONGEST * chord:
             return -1
         length = step
         while True:
@@ -162,6 +166,7 @@ def look(
             if math.hypot(row[0] - x, row[1] - y) <= longest or place + 0.5 * length <= place:
                 break
             length = 0.5 * length
+        length_so_far += math.hypot(row[0] - x, row[1] - y)
         place, x, y = at, row[0], row[1]
         points[count, 0], points[count, 1] = x, y
         count += 1

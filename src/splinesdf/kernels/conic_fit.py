@@ -18,7 +18,7 @@ from splinesdf.kernels.conic_arc import conic_arc, look, run_point
 # An arc is measured at so many times as many points before it is taken.
 _FINER = 4
 # Straight and round runs are cut to arcs of at most a quarter of a circle.
-_QUARTER = 0.5 * math.pi + 1e-9
+_QUARTER = 0.5 * math.pi + 1e-6
 # Parts of an element whose bending is compared to find where it changes sides, and how much of a
 # turn over the element's length counts as bending.
 _PARTS, _BENDS = 8, 1e-9
@@ -32,6 +32,12 @@ _AIM, _ENOUGH = 0.9, 0.8
 _ROOM = 4096
 # No arc is shorter than this share of an element.
 _SHORTEST = 1e-6
+# What reaches no farther than this share of the tolerance is no reason to end an arc, whatever its
+# directions: so small, they are rounding. Larger: tangents jump where a chord takes its place;
+# smaller: next to ends that stand still, stubs by the thousand.
+_LITTLE = 0.03
+# Points of an element that are looked at for that.
+_LOOKED = 6
 
 
 @kernel
@@ -208,6 +214,9 @@ def _free(
                 )
                 if off <= 1.0:
                     break
+                if _is_little(joints, runs, (begin, place, at), node, asked):
+                    px, py, w = 0.5 * (node[0] + other[0]), 0.5 * (node[1] + other[1]), 1.0
+                    break
                 if at - place < _SHORTEST:
                     # Directions are rounding here, as next to a cusp: a chord has to do.
                     at = _chord(joints, runs, r, (place, limit), node, asked, points)
@@ -289,6 +298,10 @@ def _farthest(
                 return limit
             if off > _ENOUGH:
                 return at
+        elif _is_little(joints, runs, (begin, place, at), node, asked):
+            low = length
+            if at == limit:
+                return limit
         else:
             high = length
         if high < _SHORTEST:
@@ -299,6 +312,25 @@ def _farthest(
         length *= min(max((_AIM / max(off, 1e-9)) ** 0.2, 0.3), _GROWTH)
         if not low < length < high:
             length = _GROWTH * low if high == np.inf else 0.5 * (low + high)
+
+
+@kernel
+def _is_little(
+    joints: Joints,
+    runs: Runs,
+    span: tuple[int, float, float],
+    node: tuple[float, float, float, float],
+    asked: tuple[float, float],
+) -> bool:
+    """Whether a part of a run stays within a share of the tolerance about its start."""
+    begin, place, end = span
+    count = _LOOKED * (math.ceil(end) - int(place))
+    for k in range(count, 0, -1):
+        at = place + (end - place) * k / count
+        row = run_point(joints, runs, begin, at, asked[0])
+        if math.hypot(row[0] - node[0], row[1] - node[1]) > _LITTLE * asked[1]:
+            return False
+    return True
 
 
 @kernel

@@ -51,7 +51,7 @@ def narrow(
     base, number, top = listed
     arcs = arclets.arcs
     distance = trimming.distance
-    radius, grain = abs(distance), trimming.grain
+    radius = abs(distance)
     m = 0.5 * (a + b)
     x, y, tx, ty, _, bend = parallel_point(joints, element, m, distance)
     low, high = a, b
@@ -69,7 +69,8 @@ def narrow(
             return a, b, 0, True
         px, py = point_on(arcs, j, t)
         gx, gy = (x - px) / far, (y - py) / far
-        gap, slope = far - radius - grain, gx * tx + gy * ty
+        gap = far - radius - _grain(joints, trimming, element, j)
+        slope = gx * tx + gy * ty
         under, over, slack = _second_range(
             trimming.bends[j], (far, gx, gy, t), (tx, ty, least, most), length
         )
@@ -266,7 +267,24 @@ def gap_at(
     """How much farther than |d| the arclet j is from a point of the parallel."""
     point = parallel_point(joints, element, t, trimming.distance)
     squared, _ = closest_on(arclets.arcs, j, point[0], point[1], np.inf, scratch)
-    return math.sqrt(squared) - abs(trimming.distance) - trimming.grain
+    far = math.sqrt(squared)
+    return far - abs(trimming.distance) - _grain(joints, trimming, element, j)
+
+
+@kernel
+def _grain(joints: Joints, trimming: Trimming, element: tuple[int, int], j: int) -> float:
+    """By how much an arclet may be farther than the distance and still count as nearer.
+
+    One that meets the element's arclet in a point is as near as that point, no nearer: what decides
+    there is which branches bound which wedge, see `splinesdf.curves.vertices`.
+    """
+    i, corner = element
+    touch = joints.touch
+    for end in range(corner, 2):
+        v = touch[i, end]
+        if v >= 0 and (touch[j, 0] == v or touch[j, 1] == v):
+            return -trimming.grain
+    return trimming.grain
 
 
 @kernel

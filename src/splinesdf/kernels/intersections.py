@@ -178,14 +178,21 @@ def _meet(
     control = np.empty(8)
     spans = np.empty((_DEPTH + 2, 2))
     spans[0, 0], spans[0, 1] = low, high
+    # At a joint the offset is zero; what it is beside that tells whether the arcs meet once more.
+    joint_low = joint_high = np.nan
+    if joined or back:
+        t = 1.0 if joined else 0.0
+        x, y = _point(arcs, i, t)
+        if x * ux + y * uy <= low + tolerance:
+            joint_low = low
+        if x * ux + y * uy >= high - tolerance:
+            joint_high = high
     size = 1
     while size > 0:
         size -= 1
         low, high = spans[size, 0], spans[size, 1]
         for k in range(15):
             values[k] = _offset(arcs, i, j, ux, uy, low + (high - low) * nodes[k])
-        # A zero where two halves meet belongs to one of them.
-        crosses = (values[0] < 0.0) != (values[7] < 0.0)
         miss = 0.0
         for k in range(7):
             guess = 0.0
@@ -204,15 +211,24 @@ def _meet(
                 changes += 1
             if control[k] != 0.0:
                 last = control[k]
+        at_low, at_high = values[0], values[7]
+        if low == joint_low:
+            at_low = _beside(control, 0, tolerance)
+        if high == joint_high:
+            at_high = _beside(control, 7, tolerance)
+        # A zero where two halves meet belongs to one of them.
+        crosses = (at_low < 0.0) != (at_high < 0.0)
         if smallest > 2.0 * miss or largest < -2.0 * miss:
             continue
         flat = max(largest, -smallest) + miss <= tolerance
-        fits = miss <= 0.25 * tolerance
+        # Beside a zero in an end, as in a joint, a change of sign is one more root.
+        alone = changes == 0 or (values[0] != 0.0 and values[7] != 0.0)
+        fits = miss <= 0.25 * tolerance and alone
         if flat or (fits and changes <= 1) or high - low <= tolerance or size + 2 > _DEPTH:
             if crosses:
                 u = 0.5 * (low + high)
                 if not flat:
-                    u = _root(arcs, i, j, ux, uy, low, high)
+                    u = _root(arcs, i, j, ux, uy, (low, high), (at_low, at_high))
                 found = _add(
                     pair, at, found, i, _at(arcs, i, ux, uy, u), j, _at(arcs, j, ux, uy, u)
                 )
@@ -318,10 +334,28 @@ def _offset(arcs: Floats, i: int, j: int, ux: float, uy: float, u: float) -> flo
 
 
 @kernel
-def _root(arcs: Floats, i: int, j: int, ux: float, uy: float, low: float, high: float) -> float:
+def _beside(control: Floats, end: int, tolerance: float) -> float:
+    """The offset beside an end at which it is zero: that of the next coefficient that is not."""
+    for n in range(1, 8):
+        value = control[abs(end - n)]
+        if abs(value) > tolerance:
+            return float(value)
+    return float(control[end])
+
+
+@kernel
+def _root(
+    arcs: Floats,
+    i: int,
+    j: int,
+    ux: float,
+    uy: float,
+    span: tuple[float, float],
+    ends: tuple[float, float],
+) -> float:
     """Where the offset is zero, given that it changes sign once: false position and halving."""
-    at_low = _offset(arcs, i, j, ux, uy, low)
-    at_high = _offset(arcs, i, j, ux, uy, high)
+    low, high = span
+    at_low, at_high = ends
     halve = False
     for _ in range(_STEPS):
         if at_low == 0.0 or at_high == 0.0:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
+from splinesdf._arrays import Floats, Ints, finite
 from splinesdf.contour import Contour
-from splinesdf.errors import InputError
 from splinesdf.level_sets.arcs import conic_arcs, shoulders
 from splinesdf.level_sets.crossings import Crossings, find_crossings
 from splinesdf.level_sets.quadratics import (
@@ -39,12 +38,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
         Closed, but for those that leave the domain. Exact up to rounding: every arc is the
         conic on which the triangle's quadratic takes the level.
     """
-    try:
-        level = float(level)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a level as a number, got {level!r}") from error
-    if not np.isfinite(level):
-        raise InputError(f"expected a finite level, got {level!r}")
+    level = finite(level, "level")
     crossings = find_crossings(mesh, ordinates, level)
     boxes = mesh.boxes[crossings.cells]
     quadratics = triangle_quadratics(boxes, ordinates[crossings.cells], level)
@@ -133,9 +127,17 @@ def _around(f: Quadratics, first: Floats, last: Floats, shortest: float) -> tupl
     chord = last - first
     gradient = f.gradient_at(first)
     backward = chord[:, 1] * gradient[:, 0] - chord[:, 0] * gradient[:, 1] < 0.0
-    rows = np.flatnonzero(backward & (np.linalg.norm(chord, axis=1) < shortest))
-    f = f.take(rows)
-    far = shoulders(f, first[rows], last[rows])
+    # A chord of no length at all has no direction: an ellipse touches a side in a vertex at the
+    # level. Beside it the side is below, so the ellipse goes around what is above, and all around.
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    point = length == 0.0
+    backward |= point & (np.trace(f.hessian, axis1=1, axis2=2) < 0.0)
+    rows = np.flatnonzero(backward & (length < shortest))
+    f, point = f.take(rows), point[rows]
+    inside = f.contains_ellipse()
+    rows, f, point = rows[inside], f.take(np.flatnonzero(inside)), point[inside]
+    across = 2.0 * (f.center + f.extremes()[0]) - first[rows]
+    far = np.where(point[:, None], across, shoulders(f, first[rows], last[rows]))
     # What rounding sends backward stays near, or would leave the triangle on the way round.
-    there = (np.linalg.norm(far - first[rows], axis=1) > shortest) & f.contains_ellipse()
+    there = np.linalg.norm(far - first[rows], axis=1) > shortest
     return rows[there], far[there]

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf._arrays import Bools, Floats, Ints, as_floats, shown
 from splinesdf.errors import InputError
-from splinesdf.meshes.mesh import Box, check_domain
+from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,22 +28,28 @@ class Grid:
     x: Floats
     y: Floats
 
+    def __post_init__(self) -> None:
+        for name in ("x", "y"):
+            lines = as_floats(getattr(self, name), f"grid lines {name}")
+            if lines.ndim != 1:
+                raise InputError(f"expected grid lines {name} in a row, got shape {lines.shape}")
+            object.__setattr__(self, name, lines)
+
     @classmethod
     def uniform(cls, domain: Box, m: int, n: int) -> Grid:
         """Divide the domain into m x n equal cells."""
         xmin, ymin, xmax, ymax = check_domain(domain)
-        if m < 1 or n < 1:
-            raise InputError(f"expected at least one cell each way, got {m} x {n}")
+        m, n = check_counts(m, n)
         return cls(np.linspace(xmin, xmax, m + 1), np.linspace(ymin, ymax, n + 1))
 
     @classmethod
     def from_lines(cls, x: ArrayLike, y: ArrayLike) -> Grid:
         """The grid with these lines, which must increase."""
-        lines = [np.ascontiguousarray(values, dtype=np.float64) for values in (x, y)]
+        lines = [as_floats(values, f"grid lines {name}") for values, name in ((x, "x"), (y, "y"))]
         for name, values in zip("xy", lines, strict=True):
             increasing = values.ndim == 1 and len(values) > 1 and bool(np.all(np.diff(values) > 0))
             if not (increasing and np.isfinite(values).all()):
-                raise InputError(f"expected increasing grid lines {name}, got {values}")
+                raise InputError(f"expected increasing grid lines {name}, got {shown(values)}")
         return cls(*lines)
 
     @property

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from splinesdf._arrays import Floats, Ints
+from splinesdf._arrays import Floats, Ints, as_floats, shown, whole
 from splinesdf.errors import InputError
 
 # Beyond it, or below its inverse, the squares of lengths overflow or vanish without a word.
 SQUARABLE = 1e100
+
+# Cells of a mesh that is made at once. More: a slip of the pen takes all memory, as a cell is 64
+# bytes of ordinates; fewer: meshes that fit could not be made.
+_MOST_CELLS = 2**28
 
 Box = tuple[float, float, float, float]
 
@@ -35,11 +39,10 @@ class Mesh(Protocol):
 
 def check_domain(domain: Box) -> Box:
     """The domain as floats, or an `InputError`."""
-    try:
-        xmin, ymin, xmax, ymax = (float(value) for value in domain)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected a domain (xmin, ymin, xmax, ymax), got {domain!r}") from error
-    box = xmin, ymin, xmax, ymax
+    sides = as_floats(domain, "a domain (xmin, ymin, xmax, ymax)")
+    if sides.shape != (4,):
+        raise InputError(f"expected a domain (xmin, ymin, xmax, ymax), got {shown(domain)}")
+    box = xmin, ymin, xmax, ymax = tuple(sides.tolist())
     # Not with the signs turned: NaN must fail.
     if not (xmax > xmin and ymax > ymin):
         raise InputError(f"expected a domain with xmin < xmax and ymin < ymax, got {box}")
@@ -49,3 +52,15 @@ def check_domain(domain: Box) -> Box:
             f"{1.0 / SQUARABLE:g}, got {box}"
         )
     return box
+
+
+def check_counts(m: int, n: int) -> tuple[int, int]:
+    """Numbers of cells each way, or an `InputError`."""
+    m, n = (
+        whole(count, name, least=-(2**63), most=_MOST_CELLS) for count, name in ((m, "m"), (n, "n"))
+    )
+    if m < 1 or n < 1:
+        raise InputError(f"expected at least one cell each way, got {m} x {n}")
+    if m * n > _MOST_CELLS:
+        raise InputError(f"expected at most {_MOST_CELLS:,} cells, got {m} x {n}")
+    return m, n

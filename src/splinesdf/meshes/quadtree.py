@@ -9,7 +9,7 @@ import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf.errors import InputError
-from splinesdf.meshes.mesh import Box, check_domain
+from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 # Lattice coordinates of the finest level, times a few roots, must stay far inside 63 bits when two
 # of them are packed into one key.
@@ -42,8 +42,7 @@ class Quadtree:
     @classmethod
     def uniform(cls, domain: Box, m: int, n: int) -> Quadtree:
         """The tree that is only its m x n roots."""
-        if m < 1 or n < 1:
-            raise InputError(f"expected at least one cell each way, got {m} x {n}")
+        m, n = check_counts(m, n)
         index = np.column_stack([np.repeat(np.arange(m), n), np.tile(np.arange(n), m)])
         level, child = np.zeros(m * n, dtype=np.int64), np.full(m * n, -1)
         return cls(check_domain(domain), (m, n), level, index, child)

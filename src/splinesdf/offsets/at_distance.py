@@ -8,14 +8,14 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import Runs
+from splinesdf._tables import FREE, Runs
 from splinesdf.contour import Contour
 from splinesdf.curves.geometry import angles
 from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops, loops_of
 from splinesdf.offsets.runs import runs_of
-from splinesdf.offsets.trimmed import Stretches, trimmed
+from splinesdf.offsets.trimmed import Stretches, joints_at, smooth_turn, trimmed
 
 # Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
 # share of the tolerance and, if need be, to its powers.
@@ -23,6 +23,9 @@ _CLOSER, _ROUNDS = 0.125, 5
 # Arcs nearer to one another than this share of the largest coordinate meet; but arcs that leave a
 # corner side by side are no farther apart, for rounding, up to the second one from it.
 _APART, _FROM_CORNER = 1e-12, 1e-7
+# Arcs below this share of their loop, and of the tolerance, are rounding. Larger: real ones are
+# lost; smaller: stubs stay.
+_STUB, _LOOSE = 1e-11, 0.03
 
 
 class Found(NamedTuple):
@@ -45,7 +48,9 @@ def contours_at(
     moved = distance + shift
     # Moved by little, walls that were just twice the distance apart end in two crossings close to
     # each other: trimming must tell them apart.
-    stretches = trimmed(shape, moved, abs(shift) or tolerance) if moved else _whole(shape)
+    apart = abs(shift) or tolerance
+    smooth = smooth_turn(moved, tolerance)
+    stretches = trimmed(shape, moved, apart, smooth) if moved else _whole(shape)
     loops = loops_of(shape, stretches, moved, tolerance)
     if loops is None:
         return None
@@ -75,10 +80,11 @@ def _fit_clear_of_itself(
     """Arcs, weights, where each loop's arcs start, whether none meet, whether one turns back."""
     if len(loops.first) < 2:
         return None
-    runs, starts = runs_of(shape, loops, distance)
+    runs, starts = runs_of(shape, loops, distance, tolerance)
     allowed = np.full(len(runs.kind), tolerance)
     for _ in range(_ROUNDS):
         arcs, weights, owner = _fitted(shape, runs, distance, allowed)
+        arcs, weights, owner = _without_stubs(arcs, weights, owner, runs.kind, starts, tolerance)
         cuts = np.searchsorted(owner, starts)
         following = np.arange(1, len(arcs) + 1)
         following[cuts[1:] - 1] = cuts[:-1]
@@ -88,6 +94,38 @@ def _fit_clear_of_itself(
         allowed[meeting] *= _CLOSER
     arcs += shape.boundary.origin
     return arcs, weights, cuts, not len(meeting), _turns_back(arcs, following)
+
+
+def _without_stubs(
+    arcs: Floats, weights: Floats, owner: Ints, kind: Ints, starts: Ints, tolerance: float
+) -> tuple[Floats, Floats, Ints]:
+    """Leave out arcs that are rounding, and let a longer neighbor reach to where they led.
+
+    They are what the noise in directions leaves next to ends that stand still.
+    """
+    loop = np.searchsorted(starts, owner, side="right") - 1
+    first = np.flatnonzero(np.diff(loop, prepend=-1))
+    size = np.maximum.reduceat(arcs.max(axis=1), first) - np.minimum.reduceat(
+        arcs.min(axis=1), first
+    )
+    extent = np.ptp(arcs, axis=1).max(axis=1)
+    stub = extent <= np.minimum(_STUB * size.max(axis=1), _LOOSE * tolerance)[loop]
+    if not stub.any():
+        return arcs, weights, owner
+    arcs, kept = arcs.copy(), ~stub
+    count = np.bincount(loop)
+    for at in np.flatnonzero(stub).tolist():
+        begin, many = int(first[loop[at]]), int(count[loop[at]])
+        around = [begin + (at - begin + step) % many for step in (-1, 1)]
+        # A neighbor that is free need not stay what it is.
+        bends = [not stub[k] and kind[owner[k]] == FREE for k in around]
+        if not any(bends):
+            kept[at] = True
+        elif bends[0] and (not bends[1] or extent[around[0]] >= extent[around[1]]):
+            arcs[around[0], 2] = arcs[at, 2]
+        else:
+            arcs[around[1], 0] = arcs[at, 0]
+    return arcs[kept], weights[kept], owner[kept]
 
 
 def _turns_back(arcs: Floats, following: Ints) -> bool:
@@ -107,7 +145,9 @@ def _fitted(
     while True:
         arcs, weights = np.empty((room, 3, 2)), np.empty(room)
         owner = np.empty(room, dtype=np.int64)
-        count = fit_runs(shape.joints, runs, distance, tolerance, arcs, weights, owner)
+        count = fit_runs(
+            joints_at(shape, distance), runs, distance, tolerance, arcs, weights, owner
+        )
         if count <= room:
             return arcs[:count], weights[:count], owner[:count]
         room = count

@@ -15,7 +15,14 @@ from splinesdf.curves.geometry import angles
 from splinesdf.curves.joints import CUSP, cycles
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
-from splinesdf.offsets.trimmed import SMOOTH, Stretches, parallels
+from splinesdf.offsets.trimmed import (
+    SMOOTH,
+    Stretches,
+    joints_at,
+    loop_sizes,
+    parallels,
+    smooth_turn,
+)
 
 # Steps of Newton's method from where trimming left two stretches to where they cross.
 _STEPS = 6
@@ -23,7 +30,7 @@ _STEPS = 6
 # near ones find each other first.
 _WIDER = 30.0
 # Where boundaries touch, stretches on the wrong side may be left that are shorter than the root of
-# rounding, as a share of the size.
+# rounding, as a share of their own loop's size, not of the drawing's.
 _SHORT = 1e-4
 # Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size.
 _SHALLOW = 1e-5
@@ -36,8 +43,8 @@ _OVERLAP = 1e-3
 _BEYOND = 1e-3
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
 _MOVED = 1e-3
-# A loop that is smaller than this share of the tolerance, or of the size, is left out: it may be
-# what rounding leaves next to where parallels cross at a small angle.
+# A loop that is smaller than this share of the tolerance, or of the boundary's loop, is left out:
+# it may be what rounding leaves next to where parallels cross at a small angle.
 _LEAST, _SPECK = 1e-3, 1e-9
 
 
@@ -65,15 +72,17 @@ class Loops(NamedTuple):
 
 def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: float) -> Loops | None:
     """Join stretches to loops, or None if one end finds no start within the tolerance."""
-    follows = _run_on(shape, stretches, distance)
+    smooth = smooth_turn(distance, tolerance)
+    follows = _run_on(shape, stretches, distance, smooth)
     if distance:  # the boundary itself is on neither side
         stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)
     if not len(follows):
-        return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)), 0.0)
+        return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)))
     spans = stretches.spans.copy()
     points = np.stack([parallels(shape, stretches.elements, at, distance) for at in spans.T])
     ends, starts = np.flatnonzero(follows < 0), np.flatnonzero(_led_to_by_none(follows))
-    farthest = max(tolerance, _SHALLOW * shape.size)
+    own = loop_sizes(shape, distance)[stretches.elements[:, 0]]
+    farthest = max(tolerance, _SHALLOW * float(own.max(initial=0.0)))
     which = _matched(points[1, ends, :2], points[0, starts, :2], farthest)
     if which is None:
         return None
@@ -81,27 +90,27 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     loose = Loose(stretches.elements, spans, points, ends, follows[ends])
     _draw_back(shape, loose, distance)
     _to_crossings(shape, loose, distance)
-    _fill_in(shape, loose, distance)
+    _fill_in(shape, loose, distance, smooth)
     bridges = _bridges(shape, points, ends, follows[ends], distance, tolerance)
     if bridges is None:
         return None
-    least = max(_LEAST * tolerance, _SPECK * shape.size)
-    return _as_loops(Stretches(stretches.elements, spans), follows, points, bridges, least)
+    loops = _as_loops(Stretches(stretches.elements, spans), follows, points, bridges)
+    return _without_specks(shape, loops, distance, tolerance)
 
 
-def _run_on(shape: Shape, stretches: Stretches, distance: float) -> Ints:
+def _run_on(shape: Shape, stretches: Stretches, distance: float, smooth: float) -> Ints:
     """The stretch that each one runs on into, -1 where it ends in a corner: (n,)."""
     elements, spans = stretches
     arclet, corner = elements.T
-    boundary, joints = shape.boundary, shape.joints
-    turns = (corner == 0) & (joints.turn[arclet] * distance > SMOOTH * abs(distance))
+    boundary, joints = shape.boundary, joints_at(shape, distance)
+    turns = (corner == 0) & (joints.turn[arclet] * distance > smooth * abs(distance))
     # What comes next: the arc around the end, or the next arclet.
     wanted = np.where(turns, 2 * arclet + 1, 2 * joints.following[arclet])
     opening = np.full(2 * len(boundary.start), -1)
     fresh = np.flatnonzero(spans[:, 0] == 0.0)
     opening[2 * arclet[fresh] + corner[fresh]] = fresh
     # In a corner toward the offset the parallels cross, be it too near to their ends for trimming.
-    cross = (corner == 0) & (joints.turn[arclet] * distance < -SMOOTH * abs(distance))
+    cross = (corner == 0) & (joints.turn[arclet] * distance < -smooth * abs(distance))
     return np.where((spans[:, 1] == 1.0) & ~cross, opening[wanted], -1)
 
 
@@ -120,7 +129,7 @@ def _without_wrong_sides(
     Such are slivers between the branches of a cusp, and short ones where boundaries touch.
     """
     right = np.ones(len(follows), dtype=np.bool_)
-    if (np.abs(shape.joints.turn) > np.pi - CUSP).any():
+    if (np.abs(joints_at(shape, distance).turn) > np.pi - CUSP).any():
         asked = np.arange(len(follows))
     else:
         asked = np.flatnonzero((follows < 0) | _led_to_by_none(follows))
@@ -128,7 +137,8 @@ def _without_wrong_sides(
             parallels(shape, stretches.elements[asked], at, distance)[:, :2]
             for at in stretches.spans[asked].T
         )
-        asked = asked[np.hypot(*(last - first).T) < _SHORT * shape.size]
+        own = loop_sizes(shape, distance)[stretches.elements[asked, 0]]
+        asked = asked[np.hypot(*(last - first).T) < _SHORT * own]
     if len(asked):
         middles = stretches.spans[asked].mean(axis=1)
         points = parallels(shape, stretches.elements[asked], middles, distance)[:, :2]
@@ -210,7 +220,7 @@ def _to_crossings(shape: Shape, loose: Loose, distance: float) -> None:
     points[1, one], points[0, other] = at_a, at_b
 
 
-def _fill_in(shape: Shape, loose: Loose, distance: float) -> None:
+def _fill_in(shape: Shape, loose: Loose, distance: float, smooth: float) -> None:
     """Let smooth parallels run on where they were cut though nothing is nearer, but for rounding.
 
     So they are beside a point of the shape in which another branch touches this one.
@@ -219,10 +229,11 @@ def _fill_in(shape: Shape, loose: Loose, distance: float) -> None:
     (i, corner), (j, other_corner) = elements[one].T, elements[other].T
     end, start = spans[one, 1], spans[other, 0]
     same = (i == j) & (end < start)
-    next_ = (shape.joints.following[i] == j) & (np.abs(shape.joints.turn[i]) <= SMOOTH)
+    joints = joints_at(shape, distance)
+    next_ = (joints.following[i] == j) & (np.abs(joints.turn[i]) <= smooth)
     gap = np.hypot(*(points[0, other, :2] - points[1, one, :2]).T)
     cut = (corner + other_corner == 0) & (same | next_) & (gap > 0.0)
-    cut &= gap <= _SHALLOW * shape.size
+    cut &= gap <= _SHALLOW * loop_sizes(shape, distance)[i]
     one, other, same, middle = one[cut], other[cut], same[cut], 0.5 * (end + start)[cut]
     if not len(one):
         return
@@ -246,7 +257,8 @@ def _draw_back(shape: Shape, loose: Loose, distance: float) -> None:
     gap = points[0, other, :2] - points[1, one, :2]
     length = np.hypot(*gap.T)
     ahead, leaving = points[1, one, 2:4], points[0, other, 2:4]
-    back = (np.sum(gap * ahead, axis=1) < -0.5 * length) & (length <= _SHALLOW * shape.size)
+    near = _SHALLOW * loop_sizes(shape, distance)[elements[one, 0]]
+    back = (np.sum(gap * ahead, axis=1) < -0.5 * length) & (length <= near)
     back &= np.abs(angles(ahead, leaving)) <= _OVERLAP
     for a, b, away in zip(one[back], other[back], length[back], strict=True):
         late = abs(points[0, b, 4]) >= abs(points[1, a, 4])
@@ -298,9 +310,7 @@ def _bridges(
     return np.column_stack([one, center, around, np.zeros(len(one))])
 
 
-def _as_loops(
-    stretches: Stretches, follows: Ints, points: Floats, bridges: Floats, least: float
-) -> Loops:
+def _as_loops(stretches: Stretches, follows: Ints, points: Floats, bridges: Floats) -> Loops:
     """Rows in the order of the loops, joints made equal to the bit."""
     count = len(follows)
     start, end = points[0, :, :2].copy(), points[1, :, :2].copy()
@@ -326,16 +336,19 @@ def _as_loops(
         follows = np.concatenate([follows, following])
         follows[bridged] = count + np.arange(len(bridged))
     order, first = cycles(follows)
-    loops = Loops(
+    return Loops(
         elements[order], spans[order], start[order], end[order], center[order], smooth[order], first
     )
-    return _without_specks(loops, least)
 
 
-def _without_specks(loops: Loops, least: float) -> Loops:
-    """Without loops that are smaller than ``least`` both ways."""
+def _without_specks(shape: Shape, loops: Loops, distance: float, tolerance: float) -> Loops:
+    """Without loops that are smaller both ways than what rounding may leave."""
     if len(loops.first) < 2:
         return loops
+    arclet = loops.elements[:, 0]
+    own = np.where(arclet < 0, 0.0, loop_sizes(shape, distance)[arclet])
+    own = np.maximum.reduceat(own, loops.first[:-1])
+    least = np.maximum(_LEAST * tolerance, _SPECK * own)
     low = np.minimum.reduceat(loops.start, loops.first[:-1])
     high = np.maximum.reduceat(loops.start, loops.first[:-1])
     sizes = np.diff(loops.first)

@@ -11,19 +11,22 @@ from itertools import pairwise
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._tables import ROUND, STRAIGHT, Runs
+from splinesdf._tables import FREE, ROUND, STRAIGHT, Runs
 from splinesdf.curves.geometry import angles
 from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops
 from splinesdf.offsets.trimmed import parallels
 
-# Circles that follow one another are one if their centers are no farther apart, as a share of
-# radius and size: what short arcs leave of their precision.
-_CENTERS_APART = 1e-9
+# A run is one line or one circle if it is no farther off anywhere, as a share of the tolerance or
+# of the largest coordinate, for rounding. Larger: what is exact is off by as much; smaller: chains
+# of many short pieces come back as many lines and arcs.
+_SHARE, _ROUNDING = 1e-3, 32 * 2.220446049250313e-16
 
 
-def runs_of(shape: Shape, loops: Loops, distance: float) -> tuple[Runs, Ints]:
+def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tuple[Runs, Ints]:
     """Cut loops into runs, each loop turned so that it begins with one.
+
+    A line or a circle reaches as far as all of it is within a small share of the tolerance.
 
     Returns
     -------
@@ -31,18 +34,23 @@ def runs_of(shape: Shape, loops: Loops, distance: float) -> tuple[Runs, Ints]:
     first : ndarray, shape (n_loops + 1,)
         Loop j has the runs ``first[j]:first[j + 1]``.
     """
-    kind, center = _kinds(shape, loops)
+    largest = max(abs(value) for value in (*shape.box, distance))
+    allowed = max(_SHARE * tolerance, _ROUNDING * largest)
+    kind, center, middle = _kinds(shape, loops, distance, allowed)
     count = len(kind)
     after = np.arange(1, count + 1)
     after[loops.first[1:] - 1] = loops.first[:-1]
+    points = np.stack([loops.start, middle, loops.end], axis=1)
     same = (kind == kind[after]) & loops.smooth
-    round_ = (kind == ROUND) & (kind[after] == ROUND)
-    scale = shape.size + abs(distance)
-    same &= ~round_ | (np.abs(center[after] - center).max(axis=1) <= _CENTERS_APART * scale)
+    same &= (kind != ROUND) | (
+        (_off_circle(points, points[after], center[after]) <= allowed)
+        & (_off_circle(points[after], points, center) <= allowed)
+    )
     order = np.concatenate([_turned(np.arange(a, b), same[a:b]) for a, b in pairwise(loops.first)])
     # Where the loops end, runs do.
     ends = ~same[order]
     ends[loops.first[1:] - 1] = True
+    ends |= _bent(points[order], center[order], kind[order], ends, allowed)
     first = np.concatenate([[0], np.flatnonzero(ends) + 1])
     members = np.repeat(np.arange(len(first) - 1), np.diff(first))
     kind, center, sweep = kind[order], center[order], _sweeps(shape, loops, order, distance)
@@ -71,8 +79,10 @@ def runs_of(shape: Shape, loops: Loops, distance: float) -> tuple[Runs, Ints]:
     )
 
 
-def _kinds(shape: Shape, loops: Loops) -> tuple[Ints, Floats]:
-    """Kind and center of every row."""
+def _kinds(
+    shape: Shape, loops: Loops, distance: float, allowed: float
+) -> tuple[Ints, Floats, Floats]:
+    """Kind, center and middle of every row, free where its parallel is neither line nor circle."""
     table = shape.kinds
     arclet, corner = loops.elements.T
     bridge, around = arclet < 0, np.isfinite(loops.center[:, 0])
@@ -80,7 +90,88 @@ def _kinds(shape: Shape, loops: Loops) -> tuple[Ints, Floats]:
     kind = np.where(bridge, np.where(around, ROUND, STRAIGHT), kind)
     center = np.where((corner == 1)[:, None], shape.boundary.end[arclet], table.center[arclet])
     center = np.where(bridge[:, None], loops.center, center)
-    return kind, center
+    own = np.flatnonzero(~bridge)
+    middle = 0.5 * (loops.start + loops.end)
+    middle[own] = parallels(shape, loops.elements[own], loops.spans[own].mean(axis=1), distance)[
+        :, :2
+    ]
+    # What is a line or a circle to rounding need not have a parallel that is, far from it.
+    points = np.stack([loops.start, middle, loops.end], axis=1)
+    off = np.where(kind == ROUND, _off_circle(points[:, 1:2], points, center), _off_chord(points))
+    return np.where(~bridge & (off > allowed), FREE, kind), center, middle
+
+
+def _off_chord(points: Floats) -> Floats:
+    """How far the middle ones of points (n, k, 2) are off the lines through the others: (n,)."""
+    chord, apart = points[:, -1] - points[:, 0], points[:, 1:-1] - points[:, :1]
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    cross = np.abs(chord[:, None, 0] * apart[..., 1] - chord[:, None, 1] * apart[..., 0])
+    far = np.hypot(apart[..., 0], apart[..., 1]).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = cross.max(axis=1) / length
+    return np.asarray(np.where(length > 0.0, off, far))
+
+
+def _off_circle(some: Floats, points: Floats, center: Floats) -> Floats:
+    """How far points (n, k, 2) are from the circles about centers (n, 2) through others."""
+    own = np.hypot(*np.moveaxis(some - center[:, None], 2, 0)).mean(axis=1)
+    return np.asarray(
+        np.abs(np.hypot(*np.moveaxis(points - center[:, None], 2, 0)) - own[:, None]).max(axis=1)
+    )
+
+
+def _bent(points: Floats, center: Floats, kind: Ints, ends: Bools, allowed: float) -> Bools:
+    """Where straight and round runs must end early, not to leave their line or their circle."""
+    result = np.zeros(len(ends), dtype=np.bool_)
+    last = np.flatnonzero(ends)
+    for a, b in zip([0, *(last[:-1] + 1).tolist()], (last + 1).tolist(), strict=True):
+        if b - a < 2 or kind[a] == FREE:
+            continue
+        if kind[a] == STRAIGHT:
+            chain = np.concatenate([points[a : a + 1, 0], points[a:b, 2]])
+            if _off_chord(chain[None])[0] > allowed:
+                result[a + _straight_parts(chain, allowed)] = True
+            continue
+        if (
+            _off_circle(points[None, a, 1:2], points[a:b].reshape(1, -1, 2), center[None, a])[0]
+            > allowed
+        ):
+            first = a
+            for k in range(a + 1, b):
+                if (
+                    _off_circle(points[None, first], points[None, k], center[None, first])[0]
+                    > allowed
+                ):
+                    result[k - 1], first = True, k
+    return result
+
+
+def _straight_parts(chain: Floats, allowed: float) -> Ints:
+    """The segments of a nearly straight chain with which lines end, each as long as can be.
+
+    A line from a vertex to a later one passes between as near as allowed if its direction is
+    within a sector about each of them.
+    """
+    result = []
+    first, number = 0, 1
+    low, high = -np.inf, np.inf
+    ahead = chain[-1] - chain[0]
+    turned = np.array([-ahead[1], ahead[0]])
+    while number < len(chain):
+        apart = chain[number] - chain[first]
+        x, y = float(apart @ ahead), float(apart @ turned)
+        length = float(np.hypot(x, y))
+        angle = float(np.arctan2(y, x))
+        if not low <= angle <= high and number > first + 1:
+            result.append(number - 2)
+            first, low, high = number - 1, -np.inf, np.inf
+            continue
+        scaled = allowed * float(np.hypot(*ahead))
+        if length > scaled:
+            room = float(np.arcsin(scaled / length))
+            low, high = max(low, angle - room), min(high, angle + room)
+        number += 1
+    return np.array(result, dtype=np.int64)
 
 
 def _sweeps(shape: Shape, loops: Loops, order: Ints, distance: float) -> Floats:

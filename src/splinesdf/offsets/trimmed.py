@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import Trimming
+from splinesdf._tables import Joints, Trimming
 from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
 
@@ -17,10 +17,13 @@ from splinesdf.curves.shape import Shape
 _GRAIN = 64 * 2.220446049250313e-16
 # Stretches shorter than this share of the tolerance are judged by their middles.
 _SHORTEST = 1e-3
-# Joints that turn by less (radians) are smooth. What that leaves open or doubled of the offset, as
-# much of the distance, lies along its tangent and does no harm. Larger: tangents jump; smaller:
-# rounding in tangents makes corners.
-SMOOTH = 1e-7
+# Joints that turn by less (radians) are smooth, and so are those that leave open or doubled less of
+# the offset, along its tangent, than the second share of the tolerance. Larger: tangents jump, and
+# chains of many such joints are off; smaller: rounding in tangents makes corners.
+SMOOTH, _DOUBLED = 1e-7, 1e-3
+# Tangents of compiled pieces are off by as much (radians). Larger: corners are passed over that
+# matter to distances far beyond the size; smaller: smooth curves are cut at their joints there.
+_NOISE = 1e-12
 # Room for stretches at first.
 _ROOM = 64
 
@@ -32,7 +35,7 @@ class Stretches(NamedTuple):
     spans: Floats  # (n, 2) the parameters at start and end
 
 
-def trimmed(shape: Shape, distance: float, tolerance: float) -> Stretches:
+def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH) -> Stretches:
     """The stretches of all parallels at a distance that nothing is nearer to.
 
     Parameters
@@ -42,12 +45,14 @@ def trimmed(shape: Shape, distance: float, tolerance: float) -> Stretches:
         Not 0.
     tolerance : float
         Stretches far shorter than it may be missing.
+    smooth : float
+        Joints that turn by less (radians) are none, see `smooth_turn`.
     """
     from splinesdf.kernels.own_chains import own_chains  # Numba loads only when it is used
     from splinesdf.kernels.trim import trim
 
-    boundary, joints = shape.boundary, shape.joints
-    request = trimming(shape, distance, tolerance)
+    boundary, joints = shape.boundary, joints_at(shape, distance)
+    request = trimming(shape, distance, tolerance, smooth)
     count = len(boundary.start)
     bent, reach = np.empty(count, dtype=np.bool_), np.empty((count, 3), dtype=np.int64)
     own_chains(joints, request, bent, reach)
@@ -60,22 +65,44 @@ def trimmed(shape: Shape, distance: float, tolerance: float) -> Stretches:
         room = found
 
 
+def joints_at(shape: Shape, distance: float) -> Joints:
+    """How arclets follow one another, seen from the side that an offset is on."""
+    return shape.joints_outside if distance > 0.0 else shape.joints
+
+
+def loop_sizes(shape: Shape, distance: float) -> Floats:
+    """The larger side of the loop of each arclet: what is small beside it, not in the drawing."""
+    joints, boundary = joints_at(shape, distance), shape.boundary
+    low = np.minimum(boundary.start, boundary.end)[joints.order]
+    high = np.maximum(boundary.start, boundary.end)[joints.order]
+    first = joints.loops[:-1]
+    size = np.maximum.reduceat(high, first) - np.minimum.reduceat(low, first)
+    result = np.empty(len(low))
+    result[joints.order] = np.repeat(size.max(axis=1), np.diff(joints.loops))
+    return result
+
+
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
     """Point, tangent of the shape, speed and curvature of parallels, (n, 6)."""
     from splinesdf.kernels.parallels import parallel_points  # Numba loads only when it is used
 
     rows = np.empty((len(at), 6))
-    parallel_points(shape.joints, elements, np.ascontiguousarray(at), distance, rows)
+    parallel_points(joints_at(shape, distance), elements, np.ascontiguousarray(at), distance, rows)
     return rows
 
 
-def trimming(shape: Shape, distance: float, tolerance: float) -> Trimming:
+def smooth_turn(distance: float, tolerance: float) -> float:
+    """By how much a joint may turn (radians) and still count as smooth."""
+    return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), _NOISE)) if distance else SMOOTH
+
+
+def trimming(shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH) -> Trimming:
     """What the kernels must know."""
     size = float(np.abs(shape.boundary.boxes[0]).max()) + abs(distance)
     return Trimming(
         distance=distance,
         bends=shape.bends.rows,
-        smooth=SMOOTH,
+        smooth=smooth,
         cusp=CUSP,
         grain=_GRAIN * size,
         shortest=max(_SHORTEST * tolerance, _GRAIN * size),

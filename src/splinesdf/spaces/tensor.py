@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from splinesdf._arrays import Floats
+from splinesdf._arrays import Floats, whole
 from splinesdf.errors import InputError
 from splinesdf.meshes.grid import Grid
 
@@ -65,8 +65,7 @@ def _to_lines(values: Floats, sides: Floats) -> Floats:
 def bspline_coefficients(mesh: Grid, i: int, j: int) -> Floats:
     """Coefficients of the one B-spline of cell (i, j), where -1 and m, n are the ring."""
     m, n = mesh.shape
-    if not (-1 <= i <= m and -1 <= j <= n):
-        raise InputError(f"expected a cell from (-1, -1) to ({m}, {n}), got ({i}, {j})")
+    i, j = whole(i, "i", least=-1, most=m), whole(j, "j", least=-1, most=n)
     result = np.zeros((m + 2, n + 2))
     result[i + 1, j + 1] = 1.0
     return result

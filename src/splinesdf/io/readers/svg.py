@@ -2,7 +2,7 @@
 
     text ──XML──> elements ──walk down: transform, fill, visibility──> outlines ──> one shape
 
-What a shape cannot hold (texts, images, ...) is counted and named in the shape's notes.
+What a shape cannot hold (texts, images, open paths, ...) is counted and named in the shape's notes.
 """
 
 from __future__ import annotations
@@ -24,7 +24,9 @@ from splinesdf.curves.repeats import drawn_once, first_of_each, repeats_note
 from splinesdf.curves.shape import Shape
 from splinesdf.curves.svg_path import closing_piece, parse_numbers, parse_path
 from splinesdf.errors import InputError
+from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
+from splinesdf.io.readers.svg_units import unit_note
 
 _NAMESPACE = "{http://www.w3.org/2000/svg}"
 # Entities can be made to expand without end, and a drawing needs none.
@@ -68,6 +70,7 @@ class _Outline(NamedTuple):
     tag: str
     loops: list[list[Floats]]
     context: _Context
+    label: str
 
 
 def svg_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
@@ -97,11 +100,18 @@ def svg_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
             "expected a path, rect, circle, ellipse, polygon or polyline that encloses something, "
             f"got none{f' ({notes[0]})' if notes else ''}"
         )
+    about_open = None
+    if not close:
+        kept, about_open = without_open([(o.label, o.loops) for o in painted])
+        painted = [o._replace(loops=k) for o, k in zip(painted, kept, strict=True) if k]
     rule = fill if fill is not None else _fill_rule(painted)
     if fill is None:
         painted, repeated = _drawn_once(painted)
         notes = (*notes, *repeats_note(repeated))
     loops = [loop for outline in painted for loop in outline.loops]
+    if close:
+        loops, about_open = joined_loops(loops)
+    notes += tuple(note for note in (about_open, unit_note(root)) if note)
     return Shape.from_pieces(
         loops, fill=rule, close=close, y_down=True, name=stem, notes=notes, once=False
     )
@@ -196,7 +206,7 @@ def _outlines(
             else:
                 loops = _loops(element, tag, context)
                 if loops:
-                    yield _Outline(tag, loops, context)
+                    yield _Outline(tag, loops, context, _label(element, tag))
                 else:
                     left_out[f"{tag} without area"] += 1
 
@@ -207,9 +217,12 @@ def _where(element: ElementTree.Element, tag: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        name = element.get("id")
-        label = f"<{tag} id={name[:40]!r}>" if name else f"<{tag}>"
-        raise type(error)(f"{label}: {error}") from error
+        raise type(error)(f"{_label(element, tag)}: {error}") from error
+
+
+def _label(element: ElementTree.Element, tag: str) -> str:
+    name = element.get("id")
+    return f"<{tag} id={name[:40]!r}>" if name else f"<{tag}>"
 
 
 def _properties(element: ElementTree.Element) -> dict[str, str]:

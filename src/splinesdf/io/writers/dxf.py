@@ -9,14 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from splinesdf.biarcs import as_arcs
-from splinesdf.conics import Element, Kind, elements
+from splinesdf.biarcs import arc_elements
+from splinesdf.conics import Element, Kind, elements, unfolded
 from splinesdf.contour import Contour, box, upright
 from splinesdf.errors import MissingExtraError
 from splinesdf.io.writers.options import Options
 
 # Bits of a SPLINE's flags (group code 70).
 _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
+# An arc that readers of its center would miss by more than this share of its chord is drawn as a
+# spline, which is exact. Smaller, and arcs that others make with few digits are splines.
+_FLAT = 1e-9
 # $INSUNITS: none, as ezdxf's own default is meters.
 _UNITS = {None: 0, "inch": 1, "mm": 4}
 
@@ -48,8 +51,12 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
         layer = f"distance_{float(chain.distance) + 0.0!r}"  # + 0.0 turns -0.0 into 0.0
         if layer not in document.layers:
             document.layers.add(layer)
-        drawn = as_arcs(chain, tolerance=options.tolerance) if options.arcs else chain
-        _add(space, drawn, {"layer": layer})
+        if options.arcs:
+            pieces = arc_elements(chain, tolerance=options.tolerance)
+        else:
+            chain = unfolded(chain)
+            pieces = elements(chain)
+        _add(space, chain, pieces, {"layer": layer}, exact=not options.arcs)
     # So that a viewer opens on the drawing, not on the origin.
     xmin, ymin, xmax, ymax = box(chains)
     document.set_modelspace_vport(
@@ -61,10 +68,19 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
     return text.getvalue()
 
 
-def _add(space: Any, contour: Contour, attributes: dict[str, str]) -> None:
-    """Add the contour to a layout."""
-    pieces = elements(contour)
-    if not pieces or any(piece.kind not in (Kind.LINE, Kind.CIRCLE) for piece in pieces):
+def _add(
+    space: Any,
+    contour: Contour,
+    pieces: Sequence[Element],
+    attributes: dict[str, str],
+    *,
+    exact: bool,
+) -> None:
+    """Add the contour, of which these are the elements, to a layout."""
+    plain = all(piece.kind in (Kind.LINE, Kind.CIRCLE) for piece in pieces)
+    if exact and any(piece.is_flat(_FLAT * abs(piece.end - piece.start)) for piece in pieces):
+        plain = False
+    if not pieces or not plain:
         _add_spline(space, contour, attributes)
     elif pieces[0].is_full:
         _add_circular(space, pieces[0], attributes)

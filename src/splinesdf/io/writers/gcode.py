@@ -1,7 +1,10 @@
 """Contours as G-code: straight moves (G1) and circular ones (G2, G3) of a milling machine.
 
     contours ─y up, lines and circular arcs, turned to the direction asked─→ paths
-             ─always the nearest one next, entered at its nearest point─→ moves
+             ─the nearest one next of those in which nothing is left to cut, entered at its
+              nearest point─→ moves
+
+What is cut out of the sheet may move: so holes come before the outline around them.
 
 The words are those that LinuxCNC, GRBL, Fanuc and their kin share: G17 (the XY plane), G20 or G21
 (inch, mm), G40 (no radius compensation), G90 (absolute ends), G91.1 (I and J from the arc's
@@ -16,10 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from splinesdf.biarcs import as_arcs
-from splinesdf.conics import Element, Kind, elements
+from splinesdf._arrays import Bools
+from splinesdf.biarcs import arc_elements
+from splinesdf.conics import Element, Kind
 from splinesdf.contour import Contour, upright
 from splinesdf.io.writers.options import Milling, Options
+from splinesdf.nesting import smallest_around
 
 # The last digit is a hundredth to a thousandth of the tolerance, and never coarser than this many
 # decimals: controls refuse arcs whose two radii differ by 0.005 mm or 0.0005 inch.
@@ -29,6 +34,9 @@ _FEWEST_DECIMALS = 4
 _SHARE = 0.98
 # More digits than doubles have say nothing.
 _DIGITS = 15
+# Arcs of a smaller sweep (radians) are straight where the nearest point is looked for: within 1e-7
+# of their chords.
+_FLAT = 1e-6
 # Nearer to an element's end than so many last digits a path is entered in that end: a shorter
 # first or last move would be all rounding.
 _SNAP = 100.0
@@ -70,20 +78,22 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     units = "mm" if options.units is None else options.units
     largest = max(float(np.abs(contour.arcs).max()) for contour in contours)
     decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(options.tolerance)) + _DECIMALS_BEYOND)
-    decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(max(largest, 1.0)))))
+    decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
     paths = [_path(c, _SHARE * options.tolerance, milling.direction) for c in contours]
-    safe = f"G0 Z{_number(milling.safe_height, decimals)}"
-    plunge = f"G1 Z{_number(-milling.depth, decimals)}"
+    cut = [k for k, path in enumerate(paths) if path.pieces]
+    around = smallest_around([upright(contours[k]) for k in cut])
+    safe, plunge = f"G0 Z{_plain(milling.safe_height)}", f"G1 Z{_plain(-milling.depth)}"
     if milling.feed is not None:
-        plunge += f" F{_number(milling.feed, decimals)}"
+        plunge += f" F{_plain(milling.feed)}"
     lines = [
         f"(splinesdf: {len(paths)} contours, lengths in {units})",
-        f"(within {_number(options.tolerance, decimals)}, {milling.direction} milling)",
+        f"(within {options.tolerance:.6g}, {milling.direction} milling)",
         "(start the spindle before: clockwise, seen from above)",
         f"G17 {'G21' if units == 'mm' else 'G20'} G40 G90 G91.1 G94",
         safe,
     ]
-    for path in _ordered(paths, complex(*milling.start), _SNAP * 10.0**-decimals):
+    snap = _SNAP * 10.0**-decimals
+    for path in _ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
         start = path.pieces[0].start
         lines += [f"(distance {float(path.distance) + 0.0!r})", f"G0 {_xy(start, decimals)}"]
         lines += [plunge, *_moves(path, decimals), safe]
@@ -92,7 +102,7 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
 
 def _path(contour: Contour, tolerance: float, direction: str) -> _Path:
     """The contour with y up, and what stays on the right (climb) or on the left."""
-    pieces = elements(as_arcs(upright(contour), tolerance=tolerance))
+    pieces = arc_elements(upright(contour), tolerance=tolerance)
     # Contours have the side nearer to the inside on their left, where x turns into y; a mirror
     # changes sides. The shape is inside, and it stays if the way is around it.
     inside_on_left = not contour.y_down
@@ -105,14 +115,22 @@ def _path(contour: Contour, tolerance: float, direction: str) -> _Path:
     return _Path(contour.distance, contour.closed, pieces)
 
 
-def _ordered(paths: Sequence[_Path], here: complex, snap: float) -> Iterator[_Path]:
-    """The paths, always the one next that is nearest to where the tool is then."""
-    paths = [path for path in paths if path.pieces]
+def _ordered(
+    paths: Sequence[_Path], around: Sequence[int], here: complex, snap: float
+) -> Iterator[_Path]:
+    """The paths, always the one next that is nearest to where the tool is then.
+
+    Only those in which nothing is left are asked; ``around`` is `smallest_around`'s.
+    """
     near = _Near(paths)
+    left_inside = np.bincount([k for k in around if k >= 0], minlength=len(paths))
     for _ in paths:
-        row, share = near.nearest(here)
-        path, at, length = paths[near.path[row]], int(near.piece[row]), float(near.lengths[row])
-        near = near.without(int(near.path[row]))
+        row, share = near.nearest(here, left_inside == 0)
+        chosen = int(near.path[row])
+        path, at, length = paths[chosen], int(near.piece[row]), float(near.lengths[row])
+        near = near.without(chosen)
+        if around[chosen] >= 0:
+            left_inside[around[chosen]] -= 1
         if path.closed:
             share = 0.0 if share * length < snap else share
             share = 1.0 if (1.0 - share) * length < snap else share
@@ -136,7 +154,10 @@ class _Near:
         self.way = np.array([p.end - p.start if closed else 0j for *_, p, closed in rows])
         self.center = np.array([p.center for *_, p, _ in rows])
         self.sweep = np.array([p.sweep for *_, p, _ in rows])
-        self.round = np.array([p.kind is Kind.CIRCLE and closed for *_, p, closed in rows])
+        # Of flatter arcs the chord is as near, and the center too far away to tell angles.
+        self.round = np.array(
+            [p.kind is Kind.CIRCLE and closed and abs(p.sweep) > _FLAT for *_, p, closed in rows]
+        )
         radius = np.array([p.radius for *_, p, _ in rows])
         self.lengths = np.where(self.round, radius * np.abs(self.sweep), np.abs(self.way))
 
@@ -147,8 +168,8 @@ class _Near:
         vars(result).update({name: values[kept] for name, values in vars(self).items()})
         return result
 
-    def nearest(self, here: complex) -> tuple[int, float]:
-        """In which row, at which share of the piece, the nearest point is."""
+    def nearest(self, here: complex, allowed: Bools) -> tuple[int, float]:
+        """In which row, at which share of the piece, the nearest point of an allowed path is."""
         squares = np.maximum(np.abs(self.way) ** 2, np.finfo(np.float64).tiny)
         share = ((here - self.start) * self.way.conjugate()).real / squares
         share = np.clip(share, 0.0, 1.0)
@@ -162,7 +183,7 @@ class _Near:
         angle = np.where(angle < -0.5 * gap, angle + 2.0 * np.pi, angle)
         share[on] = np.clip(angle / np.abs(turns), 0.0, 1.0)
         points[on] = self.center[on] + spokes * np.exp(1j * share[on] * turns)
-        row = int(np.argmin(np.abs(points - here)))
+        row = int(np.argmin(np.where(allowed[self.path], np.abs(points - here), np.inf)))
         return row, float(share[row])
 
 
@@ -202,6 +223,11 @@ def _rounded(point: complex, decimals: int) -> complex:
 
 def _xy(point: complex, decimals: int) -> str:
     return f"X{_number(point.real, decimals)} Y{_number(point.imag, decimals)}"
+
+
+def _plain(value: float) -> str:
+    """A number as it was given, without an exponent: the decimals of the curve may be too few."""
+    return np.format_float_positional(value + 0.0, trim="-")
 
 
 def _number(value: float, decimals: int) -> str:

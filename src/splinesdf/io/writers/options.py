@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from splinesdf._arrays import finite, positive
+from splinesdf._arrays import as_floats, finite, positive, shown
 from splinesdf.errors import InputError
 
 UNITS = ("mm", "inch")
@@ -29,7 +29,8 @@ class Milling:
         How deep to cut below Z = 0. At 0, the default, the tool draws on the surface.
     start : (float, float)
         Where the tool comes from, in the file's coordinates: the next contour is always the
-        nearest one, entered at its nearest point.
+        nearest one in which nothing is left to cut, so that holes come before the outline around
+        them, entered at its nearest point.
     direction : {"climb", "conventional"}
         For a spindle that turns clockwise, seen from above. Climb: what stays is on the right of
         the tool (G41's side), so an outer contour around a part is followed clockwise, a pocket's
@@ -50,10 +51,11 @@ class Milling:
         depth = finite(self.depth, "depth")
         if depth < 0.0:
             raise InputError(f"expected a depth below the surface, 0 or more, got {depth:g}")
-        if not isinstance(self.start, tuple | list | np.ndarray) or len(self.start) != 2:
-            raise InputError(f"expected two numbers for start, got {self.start!r}")
-        for value in self.start:
-            finite(value, "start")
+        start = as_floats(self.start, "start")
+        if start.shape != (2,):
+            raise InputError(f"expected two numbers for start, got {shown(self.start)}")
+        if not np.isfinite(start).all():
+            raise InputError(f"expected a finite start, got {shown(self.start)}")
         if self.direction not in DIRECTIONS:
             raise InputError(f"expected climb or conventional, got {self.direction!r}")
 

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from splinesdf._arrays import Floats
-from splinesdf.biarcs import as_arcs
-from splinesdf.conics import Element, Kind, elements
+from splinesdf.biarcs import arc_elements
+from splinesdf.conics import Element, Kind, elements, unfolded
 from splinesdf.contour import Contour, box, evaluate, halve, mirrored
 from splinesdf.io.writers.options import Options
 
@@ -20,6 +20,8 @@ _WIDEST = 2.0 * math.pi / 3.0
 # a small part of it or just half of it. Beyond this, in chords, cubics say the same better.
 _ELLIPSE_ERROR = 1e-9
 _LARGEST_RADIUS = 1e6
+# A thinner ellipse, as a share of its length, has an axis that is all rounding.
+_THINNEST = 1e-9
 _CHECKS = np.linspace(0.0, 1.0, 9)
 # Above 3 the cubic's end tangents would overshoot P1 and cross; from 2 on they are just halved.
 _HEAVIEST = 2.0
@@ -34,8 +36,6 @@ def svg_text(contours: Sequence[Contour], options: Options) -> str:
     the picture is upright.
     """
     drawn = [contour if contour.y_down else mirrored(contour) for contour in contours]
-    if options.arcs:
-        drawn = [as_arcs(contour, tolerance=options.tolerance) for contour in drawn]
     xmin, ymin, xmax, ymax = box(drawn)
     size = max(xmax - xmin, ymax - ymin)
     margin = _MARGIN * size
@@ -48,7 +48,7 @@ def svg_text(contours: Sequence[Contour], options: Options) -> str:
         color = _COLORS[int(np.sign(distance))]
         lines.append(f'<g data-distance="{float(distance)!r}" stroke="{color}">')
         lines += [
-            f'<path d="{path_data(contour, options.tolerance)}"/>'
+            f'<path d="{path_data(contour, options.tolerance, arcs=options.arcs)}"/>'
             for contour in drawn
             if contour.distance == distance
         ]
@@ -56,12 +56,13 @@ def svg_text(contours: Sequence[Contour], options: Options) -> str:
     return "\n".join([*lines, "</g>", "</svg>"]) + "\n"
 
 
-def path_data(contour: Contour, tolerance: float) -> str:
-    """SVG path data of one contour, coordinates as they are.
+def path_data(contour: Contour, tolerance: float, *, arcs: bool = False) -> str:
+    """SVG path data of one contour, coordinates as they are; if asked, lines and arcs only.
 
     It starts where the contour does, unless that is in the middle of a line or a circular arc.
     """
-    pieces = elements(contour)
+    contour = contour if arcs else unfolded(contour)
+    pieces = arc_elements(contour, tolerance=tolerance) if arcs else elements(contour)
     if not pieces:
         return f"M{_numbers(contour.arcs[0, 0])}"
     parts = [f"M{_point(pieces[0].start)}"]
@@ -69,7 +70,8 @@ def path_data(contour: Contour, tolerance: float) -> str:
         if piece.kind is Kind.LINE:
             parts.append(f"L{_point(piece.end)}")
         elif piece.kind is Kind.CIRCLE:
-            parts += _circle(contour, piece, tolerance)
+            flat = not arcs and piece.is_flat(_allowed(piece.start, piece.end, tolerance))
+            parts += _cubics_of(contour, piece, tolerance) if flat else _circle(piece)
         else:
             parts.append(_conic(contour, piece, tolerance))
     return " ".join([*parts, "Z"] if contour.closed else parts)
@@ -80,15 +82,23 @@ def _conic(contour: Contour, piece: Element, tolerance: float) -> str:
     arc, weight = contour.arcs[piece.first], float(contour.weights[piece.first])
     if piece.kind is Kind.PARABOLA:
         return f"Q{_numbers(arc[1])} {_numbers(arc[2])}"
-    ellipse = _ellipse(arc, weight) if piece.kind is Kind.ELLIPSE else None
+    ellipse = _ellipse(arc, weight, tolerance) if piece.kind is Kind.ELLIPSE else None
     return _cubics(arc, weight, tolerance) if ellipse is None else ellipse
 
 
-def _circle(contour: Contour, piece: Element, tolerance: float) -> list[str]:
+def _allowed(first: complex, last: complex, tolerance: float) -> float:
+    """By how much a reader of A may miss an arc between these."""
+    return min(_ELLIPSE_ERROR * abs(last - first), tolerance)
+
+
+def _cubics_of(contour: Contour, piece: Element, tolerance: float) -> list[str]:
+    """Commands C for all arcs of an element."""
+    rows = np.arange(piece.first, piece.first + piece.count) % len(contour.arcs)
+    return [_cubics(contour.arcs[i], float(contour.weights[i]), tolerance) for i in rows]
+
+
+def _circle(piece: Element) -> list[str]:
     """Commands for a circular arc, of which a reader finds the center again."""
-    if piece.radius > _LARGEST_RADIUS * abs(piece.end - piece.start) > 0.0:
-        rows = np.arange(piece.first, piece.first + piece.count) % len(contour.arcs)
-        return [_cubics(contour.arcs[i], float(contour.weights[i]), tolerance) for i in rows]
     flag = int(piece.sweep > 0.0)
     return [
         f"A{_numbers([piece.radius, piece.radius])} 0 0 {flag} {_point(part.end)}"
@@ -96,8 +106,11 @@ def _circle(contour: Contour, piece: Element, tolerance: float) -> list[str]:
     ]
 
 
-def _ellipse(arc: Floats, weight: float) -> str | None:
+def _ellipse(arc: Floats, weight: float, tolerance: float) -> str | None:
     """The command A for an arc of an ellipse, or None if a reader would not find it again."""
+    end, allowed = arc[2], _allowed(complex(*arc[0]), complex(*arc[2]), tolerance)
+    # All as seen from the start: far from the origin the differences of points are exact.
+    arc = arc - arc[0]
     first, middle, last = arc
     chord = math.dist(first, last)
     # The center lies on the line from P1 through the middle of the chord. With w = cos(a), the
@@ -106,7 +119,7 @@ def _ellipse(arc: Floats, weight: float) -> str | None:
     u = weight * (middle - center)
     v = 0.5 * (last - first) / math.sqrt(1.0 - weight**2)
     axes, radii, _ = np.linalg.svd(np.column_stack([u, v]))
-    if not 0.0 < radii[0] <= _LARGEST_RADIUS * chord or radii[1] <= 0.0:
+    if not 0.0 < radii[0] <= _LARGEST_RADIUS * chord or radii[1] < _THINNEST * radii[0]:
         return None
     if radii[0] - radii[1] <= 4.0 * np.finfo(np.float64).eps * radii[0]:
         radii, axes = np.full(2, radii[0]), np.eye(2)
@@ -118,10 +131,10 @@ def _ellipse(arc: Floats, weight: float) -> str | None:
         return None
     points = evaluate(arc[None], np.array([weight]), _CHECKS)[0]
     off = np.linalg.norm(_to_circle(points - reached, radii, degrees), axis=1) - 1.0
-    if np.abs(off).max() * radii[0] > _ELLIPSE_ERROR * chord:
+    if np.abs(off).max() * radii[0] > allowed:
         return None
     # Never more than half an ellipse, as w > 0: the first flag is 0.
-    return f"A{_numbers([*radii, degrees])} 0 {int(sweep)} {_numbers(last)}"
+    return f"A{_numbers([*radii, degrees])} 0 {int(sweep)} {_numbers(end)}"
 
 
 def _center_as_read(

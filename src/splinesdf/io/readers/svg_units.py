@@ -1,0 +1,88 @@
+"""What an SVG document says its unit is: a physical size, and a viewBox in units of the drawing."""
+
+from __future__ import annotations
+
+import math
+import re
+from xml.etree import ElementTree
+
+from splinesdf.curves.svg_path import parse_numbers
+
+# Millimeters, by the CSS definitions: a px is 1/96 inch, a point 1/72, a pica 12 points.
+_INCH = 25.4
+_MILLIMETERS = {
+    "mm": 1.0,
+    "cm": 10.0,
+    "q": 0.25,
+    "in": _INCH,
+    "pt": _INCH / 72.0,
+    "pc": _INCH / 6.0,
+}
+_PX = _INCH / 96.0
+_SIZE = re.compile(r"\s*([^\s%a-z]+(?:e[-+]?\d+)?)\s*(mm|cm|q|in|pt|pc)\s*", re.IGNORECASE)
+# Factors that differ by this share are one: it is what the six printed digits of a size leave.
+# Larger: a drawing that is off by a hair of every length is not told; smaller: "209.99999mm" is.
+_PRINTED = 1e-6
+
+
+def unit_note(root: ElementTree.Element) -> str | None:
+    """A line that says how long one unit is, if the document has a physical size.
+
+    None if it has none, or if one unit is a millimeter, or is an inch and the size is in inches:
+    those are the units that files for machines can be in, so nothing has to be converted.
+    """
+    sizes = [_size(root, "width"), _size(root, "height")]
+    if sizes == [None, None]:
+        return None
+    view = _view_box(root)
+    if view is None:
+        size = next(size for size in sizes if size is not None)
+        said, factor = f"{size[0]} without a viewBox", _PX
+        inches = size[2]
+    else:
+        found = [
+            (size[1] / units, f"{size[0]} for {units:.6g} units", size[2])
+            for size, units in zip(sizes, view, strict=True)
+            if size is not None
+        ]
+        aspect = root.get("preserveAspectRatio", "").split()
+        # The drawing is scaled evenly until it fits into the size, or covers it.
+        choose = max if "slice" in aspect else min
+        factor, said, inches = choose(found)
+        if "none" in aspect and max(found)[0] > (1.0 + _PRINTED) * min(found)[0]:
+            return (
+                f"the drawing says {found[0][1]} across and {found[1][1]} down, which stretches "
+                "it; nothing is converted, give the factors to your CAM program"
+            )
+    name, length = ("inch", factor / _INCH) if inches else ("mm", factor)
+    if abs(length - 1.0) <= _PRINTED:
+        return None
+    return (
+        f"the drawing says {said}: one unit is {length:.5g} {name}; nothing is converted, give "
+        "the factor to your CAM program"
+    )
+
+
+def _size(root: ElementTree.Element, key: str) -> tuple[str, float, bool] | None:
+    """A physical size as written, in millimeters, and whether it is in inches."""
+    match = _SIZE.fullmatch(root.get(key, ""))
+    if match is None:
+        return None
+    try:
+        (value,) = parse_numbers(match[1])
+    except ValueError:  # also not just one number
+        return None
+    unit = match[2].lower()
+    millimeters = value * _MILLIMETERS[unit]
+    if not 0.0 < millimeters < math.inf:
+        return None
+    return f"{value:.6g}{unit}", millimeters, unit == "in"
+
+
+def _view_box(root: ElementTree.Element) -> tuple[float, float] | None:
+    """Its width and height, or None if there is none that a browser would heed."""
+    try:
+        _, _, width, height = parse_numbers(root.get("viewBox", ""))
+    except ValueError:  # also not just four numbers
+        return None
+    return (width, height) if width > 0.0 and height > 0.0 else None

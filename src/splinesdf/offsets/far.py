@@ -1,0 +1,206 @@
+"""Offsets so far out that only the convex hull counts: arcs around its corners, and its edges.
+
+Where the hull bridges a dent of width L, the exact offset at the distance d runs along two arcs
+that cross; they are no more than L^2 / 8 d inside the line over the bridge.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from splinesdf._arrays import Floats, Ints
+from splinesdf._tables import ROUND, STRAIGHT
+from splinesdf.contour import Contour
+from splinesdf.curves.geometry import points_at
+from splinesdf.curves.shape import Shape
+from splinesdf.errors import InputError
+
+# What is farther than so many times the size is far: parallels there lie within rounding of one
+# another. Smaller: offsets lose their exact corners; larger: work that ends in nothing.
+FAR = 2e4
+# Where parallels left loose ends, a fit helps up to so many times the size; beyond, its domain is
+# all empty plane, and the hull must do.
+_EMPTY = 20.0
+# Shares of the tolerance: for dents, for curves that become polygons, and for corners left out.
+_DENTS, _FLAT, _FEWER = 0.25, 0.125, 0.25
+# Points of one arclet at most, so that a tolerance far below its bulge does not fill the memory.
+_POINTS = 4096
+# Centers of one circle are no farther apart, as a share of the size.
+_SAME = 1e-9
+_QUARTER = 0.5 * math.pi + 1e-6
+
+
+def is_far(shape: Shape, distance: float) -> bool:
+    """Whether parallels are not to be told apart at a distance."""
+    return distance > FAR * shape.size
+
+
+def has_no_fit(shape: Shape, distance: float) -> bool:
+    """Whether a fit around the boundary is no way to an offset at a distance."""
+    return distance > _EMPTY * shape.size
+
+
+def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
+    """The offset of the shape's convex hull, if that is the shape's own within the tolerance.
+
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    least = shape.size**2 / (8.0 * distance) / _DENTS
+    if tolerance < least:
+        raise InputError(
+            f"expected a tolerance of at least {least:.2g} at {distance / shape.size:.2g} times "
+            f"the shape's size, got {tolerance:.2g}: raise it, or ask for a smaller distance"
+        )
+    centers, radii = _disks(shape, tolerance)
+    normal = _tangents(centers, radii)
+    arcs, weights = [], []
+    for center, radius, before, after in zip(
+        centers, radii + distance, np.roll(normal, 1, axis=0), normal, strict=True
+    ):
+        turn = math.atan2(before[0] * after[1] - before[1] * after[0], float(before @ after))
+        turn += 2.0 * math.pi if len(centers) == 1 or (turn < 0.0 and radius > distance) else 0.0
+        count = max(1, math.ceil(turn / _QUARTER))
+        angles = math.atan2(before[1], before[0]) + turn * np.arange(2 * count + 1) / (2 * count)
+        weight = math.cos(0.5 * turn / count)
+        around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        around[0], around[-1] = before, after
+        around[1::2] /= weight
+        around = center + radius * around
+        arcs += [around[k : k + 3] for k in range(0, 2 * count, 2)]
+        weights += [weight] * count
+        if len(centers) > 1:
+            arcs.append(np.stack([around[-1]] * 3))  # the line to the next one, see below
+            weights.append(1.0)
+    every = np.stack(arcs)
+    every[:, 2] = np.roll(every[:, 0], -1, axis=0)
+    lines = np.flatnonzero((every[:, 0] == every[:, 1]).all(axis=1))
+    every[lines, 1] = 0.5 * (every[lines, 0] + every[lines, 2])
+    every += shape.boundary.origin
+    return Contour(every, np.array(weights), distance=distance, y_down=shape.y_down)
+
+
+def _disks(shape: Shape, tolerance: float) -> tuple[Floats, Floats]:
+    """Disks whose hull is that of the shape, counterclockwise: its circles, and corners as points.
+
+    Returns
+    -------
+    centers : ndarray, shape (n, 2)
+    radii : ndarray, shape (n,)
+    """
+    points, arclet = _points(shape, _FLAT * tolerance)
+    hull = _hull(points)
+    corners, arclet = points[hull], arclet[hull]
+    kinds = shape.kinds
+    round_ = kinds.kind[arclet] == ROUND
+    center = kinds.center[arclet]
+    following = np.roll(np.arange(len(hull)), -1)
+    with np.errstate(invalid="ignore"):
+        apart = np.hypot(*(center[following] - center).T)
+    same = round_ & round_[following] & (apart <= _SAME * shape.size)
+    # Turned so that no circle, and no chain of corners, goes on from the last one to the first.
+    breaks = np.flatnonzero(~same & (same[following] | np.roll(same, 1)))
+    if same.all():
+        return center[:1], np.hypot(*(corners[:1] - center[:1]).T)
+    turned = (
+        np.roll(np.arange(len(hull)), -(int(breaks[0]) + 1))
+        if len(breaks)
+        else np.arange(len(hull))
+    )
+    centers, radii = [], []
+    first = 0
+    while first < len(turned):
+        last = first
+        on_circle = bool(same[turned[first]])
+        while last + 1 < len(turned) and (
+            same[turned[last]] if on_circle else not same[turned[last + 1]]
+        ):
+            last += 1
+        rows = turned[first : last + 1]
+        if on_circle:
+            about = center[rows].mean(axis=0)
+            centers.append(about[None])
+            radii.append(np.array([np.hypot(*(corners[rows] - about).T).mean()]))
+        else:
+            kept = _fewer(corners[rows], _FEWER * tolerance)
+            centers.append(kept)
+            radii.append(np.zeros(len(kept)))
+        first = last + 1
+    return np.concatenate(centers), np.concatenate(radii)
+
+
+def _tangents(centers: Floats, radii: Floats) -> Floats:
+    """The normals, outward, of the lines that touch each disk and the next one."""
+    apart = np.roll(centers, -1, axis=0) - centers
+    length = np.hypot(apart[:, 0], apart[:, 1])
+    if len(centers) == 1:
+        return np.array([[1.0, 0.0]])
+    ahead = apart / length[:, None]
+    # Both are as far out along the normal: n . c + r is the same.
+    lean = np.clip((radii - np.roll(radii, -1)) / length, -1.0, 1.0)[:, None]
+    right = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1)
+    return np.asarray(lean * ahead + np.sqrt(1.0 - lean * lean) * right)
+
+
+def _points(shape: Shape, apart: float) -> tuple[Floats, Ints]:
+    """Points of the boundary between which its chords are no farther off, and their arclets."""
+    boundary = shape.boundary
+    bulge = shape.bends.rows[:, 10]
+    count = np.clip(np.ceil(np.sqrt(bulge / apart)), 2, _POINTS).astype(np.int64)
+    count[shape.kinds.kind == STRAIGHT] = 1
+    count[shape.kinds.kind == ROUND] = 4
+    arclet = np.repeat(np.arange(len(count)), count)
+    place = np.arange(len(arclet)) - np.repeat(np.cumsum(count) - count, count)
+    return points_at(boundary, arclet, place / count[arclet]), arclet
+
+
+def _hull(points: Floats) -> Ints:
+    """The corners of the convex hull, counterclockwise: Andrew's monotone chain."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    sides = []
+    for ordered in (order, order[::-1]):
+        chain: list[int] = []
+        rows = points[ordered].tolist()
+        for k, (x, y) in enumerate(rows):
+            while chain:
+                bx, by = rows[chain[-1]]
+                if len(chain) > 1:
+                    ax, ay = rows[chain[-2]]
+                    if (bx - ax) * (y - by) - (by - ay) * (x - bx) > 0.0:
+                        break
+                elif (x, y) != (bx, by):
+                    break
+                chain.pop()
+            chain.append(k)
+        sides.append(ordered[chain[:-1]])
+    return np.concatenate(sides)
+
+
+def _fewer(chain: Floats, apart: float) -> Floats:
+    """Corners of a chain of which those left out are no farther from the chords between."""
+    count = len(chain)
+    kept, first = [0], 0
+    while first < count - 1:
+        low, high = first + 1, min(first + 2, count - 1)
+        # As far as can be: doubled while it fits, then halved.
+        while high > low and _within(chain[first : high + 1], apart):
+            low, high = high, min(first + 2 * (high - first), count - 1)
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (
+                (middle, high) if _within(chain[first : middle + 1], apart) else (low, middle)
+            )
+        kept.append(low)
+        first = low
+    return chain[kept]
+
+
+def _within(points: Floats, apart: float) -> bool:
+    chord, off = points[-1] - points[0], points - points[0]
+    length = float(np.hypot(*chord))
+    across = np.abs(chord[0] * off[:, 1] - chord[1] * off[:, 0]).max()
+    return length > 0.0 and bool(across <= apart * length)

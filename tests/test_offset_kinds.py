@@ -1,0 +1,129 @@
+"""Kinds of shapes whose offsets were wrong or endless once, a few of each; the sweep has thousands.
+
+Judged by deviation, by GEOS's regions, and by how they were made: none by the level set of a fit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import splinesdf as ss
+from benchmarks.offset_cases import Case, cases, made
+from splinesdf._tables import FREE, ROUND
+from splinesdf.offset import deviation
+from splinesdf.offsets.far import hull_offset
+from tests.offset_checks import Verdict, check_chains
+from tests.offset_region import judge_region, slack
+from tests.shapes import gamma
+
+SQUARE = ss.Shape.from_points([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+# Path data of two triangles that share a corner.
+SHARED = "M51 38L30 16L18 2Z M51 38L4 0L10 48Z"
+
+
+@pytest.mark.parametrize("part", ["zero-handles", "touching", "shallow"])
+def test_random_shapes_of_each_kind(part: str) -> None:
+    wrong = []
+    for case in cases(part, 11, 15):
+        if case.distance < 100.0 * case.size:  # farther out is a matter of its own, see below
+            wrong += [f"{kind}: {text} {case}" for kind, text in failures(case)]
+    assert not wrong, f"{len(wrong)} wrong, {wrong[0]}"
+
+
+def failures(case: Case) -> list[tuple[str, str]]:
+    shape = made(case.shape)
+    contours = ss.offset(shape, case.distance, tolerance=case.tolerance, coarse=True)
+    verdict = Verdict()
+    check_chains(verdict, contours, case.distance)
+    judge_region(shape, contours, case.distance, case.tolerance, verdict=verdict)
+    allowed = case.tolerance + slack(shape, case.distance)
+    if (off := deviation(shape, contours)) > allowed:
+        verdict.fail("deviation", f"{off} > {allowed}")
+    if any(contour.fitted for contour in contours):
+        verdict.fail("fallback", "the level set of a fit")
+    return verdict.failures
+
+
+@pytest.mark.parametrize("distance", [1.0, -0.5, 3.0])
+def test_what_touches_in_a_point_has_one_corner_for_each_wedge(distance: float) -> None:
+    shape = ss.Shape.from_svg_path(SHARED)
+    contours = ss.offset(shape, distance, tolerance=1e-3)
+    assert deviation(shape, contours) < 1e-12 * shape.size
+    # Seen from outside one loop goes through the corner twice; from inside each is its own.
+    assert len(shape.joints.loops) - 1 == 2
+    assert len(shape.joints_outside.loops) - 1 == 1
+
+
+@pytest.mark.parametrize("sizes", [1e5, 1e7, 1e9])
+@pytest.mark.parametrize("name", ["gamma2", "square", "stadium"])
+def test_far_offsets_are_those_of_the_hull(name: str, sizes: float) -> None:
+    shape = {
+        "gamma2": gamma("gamma2"),
+        "square": SQUARE,
+        "stadium": ss.Shape.from_svg_path("M0 0H4A1 1 0 0 1 4 2H0A1 1 0 0 1 0 0Z"),
+    }[name]
+    distance = sizes * shape.size
+    tolerance = max(1e-3 * shape.size, 2e-13 * distance)
+    (contour,) = ss.offset(shape, distance, tolerance=tolerance)
+    assert deviation(shape, [contour]) <= tolerance
+    # Two half lines, four quarters: Steiner's formula, with the hull's perimeter.
+    perimeter = (
+        hull_offset(shape, 1e3 * shape.size, 1e-3 * shape.size).length
+        - 2.0 * np.pi * 1e3 * shape.size
+    )
+    expected = np.pi * distance**2 + perimeter * distance
+    assert contour.area == pytest.approx(expected, rel=1e-9 + 4.0 * tolerance / distance)
+    if name != "gamma2":
+        assert len(contour.arcs) <= 10
+
+
+def test_far_offsets_below_what_the_hull_is_good_for_are_refused_at_once() -> None:
+    with pytest.raises(ss.InputError, match=r"expected a tolerance of at least .* times the"):
+        ss.offset(SQUARE, 1e6, tolerance=1e-6)
+    assert ss.offset(SQUARE, -1e6, tolerance=1e-3) == []
+
+
+def test_the_default_tolerance_knows_the_distance() -> None:
+    contours = ss.offset(SQUARE, [0.01, -0.5])
+    assert {contour.tolerance for contour in contours} == {1e-4}
+    assert ss.offset(SQUARE, [0.9, 0.0])[0].tolerance == 2e-3
+    assert ss.offset(SQUARE, step=-0.4)[0].tolerance == 2e-3
+    assert ss.offset(SQUARE, 0.0)[0].tolerance == 2e-3
+    for options in ({"distances": [1.0, -0.1]}, {"step": -0.1}):
+        with pytest.raises(ss.InputError, match=r"a quarter of the smallest distance, 0\.025, got"):
+            ss.offset(SQUARE, **options, tolerance=0.03)
+        assert ss.offset(SQUARE, **options, tolerance=0.03, coarse=True)
+
+
+def test_steps_have_a_ceiling() -> None:
+    with pytest.raises(ss.InputError, match="taken 10,000 times at most"):
+        ss.offset(SQUARE, step=-1e-5)
+
+
+def test_a_curve_without_extent_across_its_line_is_that_line() -> None:
+    to_and_fro = ss.Shape.from_svg_path("M 0 0 C 3 0 -2 0 1 0 L 1 1 Z")
+    assert [len(to_and_fro.piece(i)) for i in range(to_and_fro.piece_count)] == [2, 2, 2]
+    bulging = ss.Shape.from_svg_path("M 0 0 C 0 1e-12 1 1e-12 1 0 L 1 1 Z")
+    assert len(bulging.piece(0)) == 4
+
+
+@pytest.mark.parametrize("at", [0.0, 1e4, 1e6])
+def test_circles_are_told_by_their_own_size(at: float) -> None:
+    circle = f"M{at + 5} {at}A5 5 0 0 1 {at - 5} {at}A5 5 0 0 1 {at + 5} {at}Z"
+    assert (ss.Shape.from_svg_path(circle).kinds.kind == ROUND).all()
+    # A curve of the same size that is none, by a thousandth.
+    ellipse = f"M{at + 5} {at}A5 5.005 0 0 1 {at - 5} {at}A5 5.005 0 0 1 {at + 5} {at}Z"
+    assert (ss.Shape.from_svg_path(ellipse).kinds.kind == FREE).all()
+
+
+def test_a_chain_of_turns_below_the_tolerance_is_no_line() -> None:
+    # Each of 400 vertices turns by less than counts as a corner; all together they are an arc.
+    turn, count = 5e-8, 400
+    angle = np.concatenate([[0.0], np.cumsum(np.full(count - 1, turn))])
+    chain = np.cumsum(np.stack([np.cos(angle), np.sin(angle)], axis=1), axis=0)
+    shape = ss.Shape.from_points(np.concatenate([[[0.0, 0.0]], chain, [[200.0, 300.0]]]))
+    for distance in (1.0, -1.0):
+        for tolerance in (1e-4, 1e-6, 1e-9):
+            contours = ss.offset(shape, distance, tolerance=tolerance)
+            assert deviation(shape, contours) <= 0.1 * tolerance + 1e-12
