@@ -26,6 +26,7 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.fit import fit_steps
+from splinesdf.io.enclosed import Sides
 from splinesdf.io.written import Worst
 from splinesdf.paper import Row
 from tests.shapes import gamma
@@ -142,7 +143,10 @@ def examples() -> dict[type, Any]:
         shape.bends,
     ]
     answers += [
-        Worst(deviation=0.1, point=(1.0, 2.0), distance=0.5, curves={0.5: 2}),
+        Worst(
+            *(0.1, (1.0, 2.0), 0.5, {0.5: 2}, 0.0, 0),
+            (Sides(0.5, 100, 1, 0, 0, (1.0, 2.0), 0.01),),
+        ),
         Row(1, "gamma1", "uniform", "V", 0, 2, 2, 0.1, None, 0.2),
     ]
     seen: dict[int, Any] = {}
@@ -256,7 +260,7 @@ if __name__ == "__main__":
         try:
             pool.map(too_fine, [20])
         except ss.ToleranceNotReached as error:
-            print(error.result.stopped, error.result.cells > 20, error.result.spline.shape.name)
+            print(error.result.stopped, 0 < error.result.cells <= 20, error.result.spline.shape.name)
         found, projected = pool.apply(distances, [(shape(), points)])
         print(np.array_equal(found, expected), np.array_equal(projected.distance, expected))
         result = pool.apply(fitted, [0.05])
