@@ -260,7 +260,8 @@ if __name__ == "__main__":
         try:
             pool.map(too_fine, [20])
         except ss.ToleranceNotReached as error:
-            print(error.result.stopped, 0 < error.result.cells <= 20, error.result.spline.shape.name)
+            result = error.result
+            print(result.stopped, 0 < result.cells <= 20, result.spline.shape.name)
         found, projected = pool.apply(distances, [(shape(), points)])
         print(np.array_equal(found, expected), np.array_equal(projected.distance, expected))
         result = pool.apply(fitted, [0.05])
