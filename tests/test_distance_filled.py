@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import comb
 
 import numpy as np
 import pytest
@@ -319,3 +320,36 @@ def test_a_sliver_that_is_closed_leaves_nothing(
     whole = np.minimum(alone, np.hypot(*(points - along).T))
     # All of it, or nothing of it: which, is a matter of rounding.
     assert np.allclose(found, alone, atol=1e-12) or np.allclose(found, whole, atol=1e-12)
+
+
+# A square with a square hole, joined by a bridge that is drawn to and fro; and one with a spike of
+# a cubic into its inside, there and back.
+KEYHOLE = "M0 0L40 0L40 40L0 40L0 0L11 9L11 18L20 18L20 9L11 9Z"
+SPIKE = "M0 0L40 0L40 40L0 40L0 0C9 2 5 17 23 31C5 17 9 2 0 0Z"
+# Mixed up by an own map: a similarity leaves no number round.
+TURNED = np.array([[0.8, -0.6], [0.6, 0.8]])
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize("fill", ["nonzero", "evenodd"])
+@pytest.mark.parametrize("path", [KEYHOLE, SPIKE])
+def test_points_on_lines_that_bound_nothing_are_inside(path: str, fill: str, turned: bool) -> None:
+    # To rounding one way of the line is on the left of such a point and the other on the right.
+    drawn = ss.Shape.from_svg_path(path, fill=fill)
+    matrix = TURNED if turned else np.eye(2)
+    pieces = [drawn.piece(i) @ matrix for i in range(drawn.piece_count)]
+    shape = ss.Shape.from_pieces([pieces], fill=fill)
+    random = np.random.default_rng(2)
+    t = np.concatenate([np.arange(1, 400) / 400.0, random.random(4000)])
+    control = pieces[4]
+    points = np.zeros((len(t), 2))
+    last = len(control) - 1
+    for k, point in enumerate(control):
+        points += (comb(last, k) * t**k * (1.0 - t) ** (last - k))[:, None] * point
+    # Clear of the boundary, by which a side is told for rounding only.
+    points = points[(t > 0.01) & (t < 0.99)]
+    together = ss.signed_distance(shape, points)
+    alone = np.array([ss.signed_distance(shape, point) for point in points[:400]])
+    near = ss.signed_distance(shape, np.concatenate([points[:400], points[:400] + 0.01]))
+    for found in (together, alone, near):
+        assert (found < 0.0).all(), f"{np.sum(found >= 0.0)} of {len(found)} outside"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats
@@ -15,6 +17,13 @@ _LAST_STEP = 1e-9
 _LAST_BISECTION = 1e-16
 # The walk's stack: a balanced tree over 2^60 arclets is no deeper.
 _STACK = 64
+# A point nearer to a curve than this share of the largest coordinate has a side of it by rounding
+# only. Smaller: where a line is drawn to and fro, a point on it may count one way and not the
+# other; larger: points are asked again in vain.
+_ON = 64 * 2.220446049250313e-16
+# How often such a point, if it is clear of the boundary, is asked again elsewhere, as far away as
+# this share of its distance and turned by this angle (radians) each time. No boundary lies between.
+_AGAIN, _AWAY, _TURNED = 12, 0.45, 2.399963229728653
 # Share of the distance within which a neighbor is certain to be on the same side. Rounding in
 # the distance is far below what is left.
 _SURE = 0.999999
@@ -41,6 +50,9 @@ def fill_inside(
     """
     anchor_x = anchor_y = anchor_squared = 0.0
     last = False
+    grain = 0.0
+    for k in range(4):
+        grain = max(grain, _ON * abs(arclets.boxes[0, k]))
     for i in range(points.shape[0]):
         px, py = points[i, 0], points[i, 1]
         here = (_SURE * distance[i]) ** 2
@@ -48,15 +60,26 @@ def fill_inside(
             if here > anchor_squared:
                 anchor_x, anchor_y, anchor_squared = px, py, here
         else:
-            number = _winding(arclets, px, py)
+            number, on = _winding(arclets, px, py, grain)
+            away = _AWAY * distance[i]
+            for k in range(_AGAIN):
+                if not on or not away > grain:
+                    break
+                x, y = px + away * math.cos(k * _TURNED), py + away * math.sin(k * _TURNED)
+                again, on = _winding(arclets, x, y, grain)
+                number = number if on else again
             last = number % 2 != 0 if evenodd else number != 0
             anchor_x, anchor_y, anchor_squared = px, py, here
         inside[i] = last
 
 
 @kernel
-def _winding(arclets: Arclets, px: float, py: float) -> int:
-    """Winding number by the ray in +x; a run of arclets right of the point counts by its ends."""
+def _winding(arclets: Arclets, px: float, py: float, grain: float) -> tuple[int, bool]:
+    """Winding number by the ray in +x, and whether the point is on a curve, to rounding.
+
+    A run of arclets right of the point counts by its ends.
+    """
+    on = False
     nodes = np.empty(_STACK, dtype=np.int64)
     count = 0
     size = 1
@@ -72,20 +95,25 @@ def _winding(arclets: Arclets, px: float, py: float) -> int:
         if px < arclets.boxes[node, 0] and arclets.chain[node] == 1:
             count += int(arclets.end[end - 1, 1] > py) - int(arclets.start[first, 1] > py)
         elif end - first == 1:
-            count += _crossing(arclets.arcs, first, px, py)
+            crossing, near = _crossing(arclets.arcs, first, px, py, grain)
+            count += crossing
+            on = on or near
         else:
             nodes[size] = node + 1
             nodes[size + 1] = node + 2 * ((first + end) // 2 - first)
             size += 2
-    return count
+    return count, on
 
 
 @kernel
-def _crossing(arcs: Floats, i: int, px: float, py: float) -> int:
-    """+1, -1 or 0: how the y-monotone arclet i crosses the ray from the point in +x."""
+def _crossing(arcs: Floats, i: int, px: float, py: float, grain: float) -> tuple[int, bool]:
+    """+1, -1 or 0: how the y-monotone arclet i crosses the ray from the point in +x.
+
+    And whether the arclet passes the point no farther than the grain, to first order.
+    """
     rising = int(arcs[i, 2] > py) - int(arcs[i, 4] > py)
     if rising == 0:
-        return 0
+        return 0, False
     low, high = 0.0, 1.0
     vy = py - arcs[i, 4]
     t = vy / (arcs[i, 2] - arcs[i, 4])
@@ -108,7 +136,15 @@ def _crossing(arcs: Floats, i: int, px: float, py: float) -> int:
         t = moved
         if step <= last_step:
             break
-    x = 0.0
+    x = dx = dy = 0.0
     for k in range(last, 3, -2):
+        dx = dx * t + x + arcs[i, k]
         x = (x + arcs[i, k]) * t
-    return rising if x + arcs[i, 3] > px else 0
+    y = 0.0
+    for k in range(last + 1, 4, -2):
+        dy = dy * t + y + arcs[i, k]
+        y = (y + arcs[i, k]) * t
+    beside = x + arcs[i, 3] - px
+    # Across the tangent: where it is nearly level, rounding along the ray is far more.
+    near = abs(beside * dy) <= grain * math.sqrt(dx * dx + dy * dy)
+    return (rising if beside > 0.0 else 0), near
