@@ -123,7 +123,9 @@ def check(case: Case, folder: Path) -> None:
 
     domain = np.array(case.domain)
     random = np.random.default_rng(5)
-    points = on_grid(domain[:2] + random.uniform(-0.25, 1.25, (2000, 2)) * (domain[2:] - domain[:2]))
+    points = on_grid(
+        domain[:2] + random.uniform(-0.25, 1.25, (2000, 2)) * (domain[2:] - domain[:2])
+    )
     value = far.spline(place(points))
     assert np.abs(value / place.scale - home.spline(points)).max() <= 16.0 * unit
     exact = ss.signed_distance(shape, place(points))
