@@ -47,6 +47,9 @@ _TOGETHER = 64
 _NOISE = 2.5e-13
 # Rounding in distances and ordinates, as a share of the largest coordinate: that of the kernel.
 _GRAIN = 256 * 2.220446049250313e-16
+# What rounding of a point to the shape's own coordinates takes of that: four units in the last
+# place, where half of one is enough each way. Smaller: bounds far from the origin are no bounds.
+_ASKED = 4.0 / 256.0
 # Open triangles at a time: 100 MB. Beyond it they keep the bound that they have.
 _MOST_OPEN = 400_000
 
@@ -98,13 +101,14 @@ def cell_errors(
         Only what may lie in one of them counts; all does if there is none.
     wanted : Wanted
     """
-    boxes = spline.mesh.boxes[cells] - np.tile(shape.boundary.origin, 2)
+    origin = shape.boundary.origin
+    boxes = spline.mesh.local_boxes[cells] + np.tile(spline.domain[:2] - origin, 2)
     count = len(cells)
     search = _Search(
         shape=shape,
         bands=bands,
         wanted=wanted,
-        largest=float(max(np.abs(boxes).max(initial=0.0), np.abs(shape.boundary.boxes[0]).max())),
+        largest=_largest(shape, boxes),
         anchor=np.column_stack([0.5 * (boxes[:, :2] + boxes[:, 2:]), center]),
         low=np.zeros(8 * count),
         high=np.zeros(8 * count),
@@ -133,6 +137,15 @@ def _largest_of(shape: Shape, spline: SplineSDF) -> float:
     """The largest coordinate of the domain and the boundary, from where distances are computed."""
     domain = np.array(spline.domain) - np.tile(shape.boundary.origin, 2)
     return float(max(np.abs(domain).max(), np.abs(shape.boundary.boxes[0]).max()))
+
+
+def _largest(shape: Shape, boxes: Floats) -> float:
+    """The largest coordinate as far as rounding is concerned, which is that of differences.
+
+    Points that are asked for exact distances are rounded in the shape's own coordinates, though.
+    """
+    local = max(np.abs(boxes).max(initial=0.0), np.abs(shape.boundary.boxes[0]).max())
+    return float(local + _ASKED * (local + np.abs(shape.boundary.origin).max()))
 
 
 def _enclose(

@@ -140,10 +140,11 @@ class SplineSDF:
         columns, rows = self._nodes_of_cells(x, 0), self._nodes_of_cells(y, 1)
         distance = np.full((len(y), len(x)), np.nan)
 
+        local_x, local_y = x - self.domain[0], y - self.domain[1]
+
         def work(part: slice) -> None:
-            evaluate_lattice(
-                self._frames[part], self._powers[part], columns[part], rows[part], x, y, distance
-            )
+            cells = self._frames[part], self._powers[part], columns[part], rows[part]
+            evaluate_lattice(*cells, local_x, local_y, distance)
 
         count = len(self.ordinates)
         in_blocks(count, work, size=min(4096, math.ceil(count / (4 * processors()))))
@@ -245,7 +246,7 @@ class SplineSDF:
 
     @cached_property
     def _frames(self) -> Floats:
-        return frames(self.mesh.boxes)
+        return frames(self.mesh.local_boxes)
 
     @cached_property
     def _powers(self) -> Floats:
@@ -271,7 +272,7 @@ class SplineSDF:
         """The spline along the domain's border, see `splinesdf.kernels.border`."""
         from splinesdf.kernels.border import fill_drops
 
-        boxes, corners = self.mesh.boxes, self.mesh.corners
+        boxes, corners = self.mesh.local_boxes, self.mesh.corners
         edges = []
         # Side after side: cells beside it, by which corner; columns of V, E, V; the axis along it.
         for by, columns, axis in (
@@ -285,7 +286,8 @@ class SplineSDF:
             cells = cells[np.argsort(corners[cells, axis])]
             ordinates = self.ordinates[cells][:, columns]
             side = np.column_stack([boxes[cells, axis], ordinates[:, 0], ordinates[:, 1]])
-            edges.append(np.vstack([side, [self.domain[axis + 2], ordinates[-1, 2], 0.0]]))
+            length = self.domain[axis + 2] - self.domain[axis]
+            edges.append(np.vstack([side, [length, ordinates[-1, 2], 0.0]]))
         counts = np.array([len(side) for side in edges])
         starts = np.concatenate([[0], np.cumsum(counts)])
         drops = np.zeros((4, 2 << math.ceil(math.log2(counts.max()))))

@@ -47,8 +47,8 @@ def fill_drops(starts: Ints, edges: Floats, drops: Floats) -> None:
     starts : ndarray, shape (5,)
         Side ``k`` has the knots ``starts[k]`` to ``starts[k + 1] - 1``.
     edges : ndarray, shape (n_knots, 3)
-        Of each knot: where it is, s there, and the ordinate in the middle of the edge that begins
-        there.
+        Of each knot: where it is from the side's start, s there, and the ordinate in the middle of
+        the edge that begins there.
     drops : ndarray, shape (4, n_nodes)
     """
     first, last = np.empty(_DEPTH, dtype=np.int64), np.empty(_DEPTH, dtype=np.int64)
@@ -149,7 +149,8 @@ def extend(
         line = domain[2] if best_side == 1 else domain[0]
         if not upright:
             line = domain[3] if best_side == 2 else domain[1]
-        dx, dy = (x - line, y - at) if upright else (x - at, y - line)
+        along, up = x - domain[0], y - domain[1]
+        dx, dy = (x - line, up - at) if upright else (along - at, y - line)
         distance = _length(dx, dy)
         if distance < _TINY:
             dx, dy, distance = dx / _TINY, dy / _TINY, _TINY
@@ -180,14 +181,15 @@ def _length(x: float, y: float) -> float:
 
 @kernel
 def _seen_from(domain: Floats, side: int, x: float, y: float) -> tuple[float, float]:
-    """Where a point is along the line of a side, and how far from it."""
+    """Where a point is along the line of a side, from its start, and how far from it."""
+    along, up = x - domain[0], y - domain[1]
     if side == 0:
-        return x, abs(y - domain[1])
+        return along, abs(up)
     if side == 1:
-        return y, abs(x - domain[2])
+        return up, abs(x - domain[2])
     if side == 2:
-        return x, abs(y - domain[3])
-    return y, abs(x - domain[0])
+        return along, abs(y - domain[3])
+    return up, abs(along)
 
 
 @kernel

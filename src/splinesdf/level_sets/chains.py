@@ -19,6 +19,9 @@ from splinesdf.meshes import Mesh
 # Arcs shorter than this share of the domain are left out and their ends joined. Shorter ones
 # have too few digits for a tangent to a millionth; longer ones begin to matter.
 _SHORTEST = 1e-9
+# And those shorter than so many units in the last place of the largest coordinate, which moves the
+# ends and the middle of an arc by half a unit each. Smaller: some come out as points.
+_ROUNDED = 64.0
 
 
 def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = False) -> list[Contour]:
@@ -40,7 +43,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
     """
     level = finite(level, "level")
     crossings = find_crossings(mesh, ordinates, level)
-    boxes = mesh.boxes[crossings.cells]
+    boxes = mesh.local_boxes[crossings.cells]
     quadratics = triangle_quadratics(boxes, ordinates[crossings.cells], level)
     triangle, start, end = _join(crossings, quadratics)
 
@@ -53,7 +56,8 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
     end = np.concatenate([end, np.roll(corner, -1, axis=1).ravel()])
 
     xmin, ymin, xmax, ymax = mesh.domain
-    shortest = _SHORTEST * max(xmax - xmin, ymax - ymin)
+    size, largest = max(xmax - xmin, ymax - ymin), max(map(abs, mesh.domain))
+    shortest = max(_SHORTEST * size, _ROUNDED * float(np.spacing(largest)))
     result = []
     for chain, closed in _chains(start, end):
         points = np.concatenate([position[start[chain[:1]]], position[end[chain]]])
@@ -61,7 +65,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
         if len(points) == 0:
             continue
         _, arcs, weights = conic_arcs(f, points[:-1], points[1:], shortest)
-        result.append(Contour(arcs, weights, closed, level, y_down))
+        result.append(Contour(arcs + np.array([xmin, ymin]), weights, closed, level, y_down))
     return result
 
 

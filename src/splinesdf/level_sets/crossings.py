@@ -27,7 +27,7 @@ class Crossings(NamedTuple):
     """
 
     cells: Ints  # (n,) cells that the level may pass
-    position: Floats  # (c, 2)
+    position: Floats  # (c, 2) from the domain's lower left corner
     triangle: Ints  # (e,) 4 * (row of cells) + number of the triangle in the cell
     crossing: Ints  # (e,) which crossing
     leaving: Bools  # (e,) the way round leaves the side below the level there
@@ -53,7 +53,7 @@ def find_crossings(mesh: Mesh, ordinates: Floats, level: float) -> Crossings:
     values = ordinates[cells] - level
     keys, first = np.unique(_keys(mesh.corners.reshape(-1, 2, 2)), return_index=True)
     vertex_value = ordinates[:, :4].ravel()[first] - level
-    vertex_at = _corner_points(mesh.boxes).reshape(-1, 2)[first]
+    vertex_at = _corner_points(mesh.local_boxes).reshape(-1, 2)[first]
 
     segments = _split_sides(_corner_lattice(mesh.corners[cells]), keys)
     ends = np.searchsorted(keys, _pack(segments.ends))
@@ -65,7 +65,7 @@ def find_crossings(mesh: Mesh, ordinates: Floats, level: float) -> Crossings:
     beside, center = center_ordinates(values)
     diagonals = np.stack([values[:, :4], beside, np.repeat(center[:, None], 4, axis=1)], axis=-1)
     corner = np.searchsorted(keys, _pack(_corner_lattice(mesh.corners[cells])))
-    boxes = mesh.boxes[cells]
+    boxes = mesh.local_boxes[cells]
     middle = np.repeat(0.5 * (boxes[:, :2] + boxes[:, 2:]), 4, axis=0)
 
     polynomial = np.concatenate([side_values[shared], diagonals.reshape(-1, 3)])

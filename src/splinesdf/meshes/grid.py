@@ -73,10 +73,12 @@ class Grid:
     @cached_property
     def boxes(self) -> Floats:
         """The cells, shape (m n, 4)."""
-        m, n = self.shape
-        x0, y0 = np.repeat(self.x[:-1], n), np.tile(self.y[:-1], m)
-        x1, y1 = np.repeat(self.x[1:], n), np.tile(self.y[1:], m)
-        return np.column_stack([x0, y0, x1, y1])
+        return _boxes(self.x, self.y)
+
+    @cached_property
+    def local_boxes(self) -> Floats:
+        """The cells from the domain's lower left corner, shape (m n, 4)."""
+        return _boxes(self.x - self.x[0], self.y - self.y[0])
 
     @property
     def corners(self) -> Ints:
@@ -96,3 +98,10 @@ class Grid:
             np.sort(np.concatenate([self.x, middles[0][columns]])),
             np.sort(np.concatenate([self.y, middles[1][rows]])),
         )
+
+
+def _boxes(x: Floats, y: Floats) -> Floats:
+    m, n = len(x) - 1, len(y) - 1
+    x0, y0 = np.repeat(x[:-1], n), np.tile(y[:-1], m)
+    x1, y1 = np.repeat(x[1:], n), np.tile(y[1:], m)
+    return np.column_stack([x0, y0, x1, y1])

@@ -29,6 +29,14 @@ class Mesh(Protocol):
         """The cells, shape (n, 4): xmin, ymin, xmax, ymax."""
 
     @property
+    def local_boxes(self) -> Floats:
+        """The same, measured from the domain's lower left corner.
+
+        Their rounding is that of the domain's size, not that of the coordinates: far from the
+        origin differences between them keep their digits.
+        """
+
+    @property
     def corners(self) -> Ints:
         """The cells on an integer lattice, shape (n, 4): equal numbers are equal points.
 

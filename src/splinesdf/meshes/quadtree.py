@@ -120,13 +120,12 @@ class Quadtree:
     @cached_property
     def boxes(self) -> Floats:
         """The cells, shape (n, 4). Equal lattice corners are equal numbers."""
-        xmin, ymin, xmax, ymax = self.domain
-        scale = np.exp2(-float(self.depth))
-        steps = np.array([(xmax - xmin) / self.shape[0], (ymax - ymin) / self.shape[1]]) * scale
-        corners = self.corners
-        return np.column_stack(
-            [corners[:, :2] * steps + [xmin, ymin], corners[:, 2:] * steps + [xmin, ymin]]
-        )
+        return np.asarray(self.local_boxes + np.tile(self.domain[:2], 2))
+
+    @cached_property
+    def local_boxes(self) -> Floats:
+        """The cells from the domain's lower left corner, shape (n, 4)."""
+        return np.asarray(self.corners * np.tile(self.side(self.depth), 2))
 
     @property
     def corners(self) -> Ints:
