@@ -7,11 +7,8 @@ import dataclasses
 import os
 import subprocess
 import sys
-import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import FrameType
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,38 +16,10 @@ import pytest
 import splinesdf as ss
 from splinesdf._atomic import atomic_file, write_text
 from splinesdf.meshes import Grid
-from tests.saving import fit_with_shape
+from tests.saving import before_line, fit_with_shape
 from tests.shapes import UNIT
 
 OLD = 7200.0  # seconds: left over for longer than any write pauses
-
-
-@contextlib.contextmanager
-def before_line(number: int, act: Callable[[], object]) -> Iterator[list[int]]:
-    """Do something before the line of ours or of zipfile that is run after so many others.
-
-    Yields how many lines are left before it, below zero once it was done.
-    """
-    ours = str(Path(ss.__file__).parent)
-    left = [number]
-
-    def trace(frame: FrameType, event: str, _: Any) -> Any:
-        name = frame.f_code.co_filename
-        if not (name.startswith(ours) or name == zipfile.__file__):
-            return None
-        if event == "line":
-            left[0] -= 1
-            if left[0] < 0:
-                sys.settrace(None)
-                act()
-        return trace
-
-    before = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        yield left
-    finally:
-        sys.settrace(before)
 
 
 def between_all_lines(

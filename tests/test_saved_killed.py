@@ -10,18 +10,14 @@ import signal
 import subprocess
 import sys
 import time
-import zipfile
-from collections.abc import Iterator
 from pathlib import Path
-from types import FrameType
-from typing import Any
 
 import numpy as np
 import pytest
 
 import splinesdf as ss
 from splinesdf.meshes import Grid
-from tests.saving import fit_with_shape
+from tests.saving import before_line, fit_with_shape
 from tests.shapes import UNIT
 
 # Saves one large fit after the other under the same name; fit k has the ordinates k.
@@ -93,7 +89,7 @@ def test_interrupted_at_every_line(tmp_path: Path) -> None:
     number, reached = 0, True
     while reached:
         path.write_bytes(before)
-        with interrupt_at_line(number) as left, contextlib.suppress(KeyboardInterrupt):
+        with before_line(number, interrupt) as left, contextlib.suppress(KeyboardInterrupt):
             new.save(path)
         reached = left[0] < 0
         now = path.read_bytes()
@@ -104,32 +100,8 @@ def test_interrupted_at_every_line(tmp_path: Path) -> None:
     assert number > 1000  # there were so many lines
 
 
-@contextlib.contextmanager
-def interrupt_at_line(number: int) -> Iterator[list[int]]:
-    """Raise KeyboardInterrupt before the line that is run after so many others.
-
-    Yields how many lines are left before it, below zero once it was raised.
-    """
-    ours = str(Path(ss.__file__).parent)
-    left = [number]
-
-    def trace(frame: FrameType, event: str, _: Any) -> Any:
-        name = frame.f_code.co_filename
-        if not (name.startswith(ours) or name == zipfile.__file__):
-            return None
-        if event == "line":
-            left[0] -= 1
-            if left[0] < 0:
-                sys.settrace(None)
-                raise KeyboardInterrupt
-        return trace
-
-    before = sys.gettrace()
-    sys.settrace(trace)
-    try:
-        yield left
-    finally:
-        sys.settrace(before)
+def interrupt() -> None:
+    raise KeyboardInterrupt
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.999])

@@ -23,7 +23,7 @@ from splinesdf.io.enclosed import check_sides
 from splinesdf.io.output import check_format
 from splinesdf.io.writers.options import DIRECTIONS, UNITS
 from splinesdf.io.written import measure_file
-from splinesdf.offset import deviation, least_tolerance
+from splinesdf.offset import least_tolerance
 from splinesdf.report import working
 
 # How much of the tolerance the offset gets; the file has the rest. DXF without --arcs is exact. In
@@ -104,9 +104,9 @@ def offset(
     rest = (1.0 - share) * tolerance
     ss.write(output, contours, tolerance=rest if rest > 0.0 else None, **options)
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
-    report.print_offsets(source, contours, distances, tolerance)
+    off = report.print_offsets(source, contours, distances, tolerance)
     report.print_written(output)
-    passed = _deviation(source, contours, tolerance)
+    passed = _keeps(off, tolerance)
     if check:
         # In steps there is to be nothing left at the next one.
         ended = () if step is None else ((len(distances) + 1) * step,)
@@ -175,15 +175,14 @@ def _nothing(source: ss.Shape, distances: tuple[float, ...], tolerance: float) -
             raise click.exceptions.Exit(1)
 
 
-def _deviation(source: ss.Shape, contours: list[ss.Contour], tolerance: float) -> bool:
+def _keeps(off: float, tolerance: float) -> bool:
     """Whether the contours themselves keep the tolerance, as far as they are measured."""
-    off = deviation(source, contours)
     if not off <= tolerance:
         _complain(
             f"expected a deviation of at most {tolerance:.4g}, got {off:.4g}: do not use the file; "
             "try another tolerance, or move the shape nearer to the origin"
         )
-    return bool(off <= tolerance)
+    return off <= tolerance
 
 
 def _check(

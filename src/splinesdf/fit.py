@@ -244,36 +244,63 @@ def fit_steps(
             error, bound = largest_error(shape, spline, trial.center, bands, known)
             # What is left to do around bands may be nothing in them.
             stopped = "reached" if certify and bound <= tolerance else stopped
-        center = _center_error(spline, trial.center, bands)
+        center = center_error(spline, trial.center, bands)
         history = (*history, FitStep(spline.mesh, count, error, center, trial.evaluations))
-        made = Provenance(
+        yield result_of(
+            spline,
             tolerance=tolerance,
             error=error,
-            bound=bound if certify and bound is not None and np.isfinite(bound) else None,
-            bands=tuple((float(low), float(high)) for low, high in bands),
+            bound=bound if certify else None,
+            history=history,
             space=space,
             operator=operator,
             stopped=stopped,
-            evaluations=trial.evaluations,
-        )
-        yield FitResult(
-            spline=replace(spline, made=made),
-            tolerance=tolerance,
-            error=error,
-            centre_error=center,
-            bound=made.bound,
-            cells=count,
-            stopped=stopped,
-            history=history,
-            evaluations=trial.evaluations,
-            bands=made.bands,
+            bands=tuple((float(low), float(high)) for low, high in bands),
         )
         if stopped != "refining":
             return
         trial.refine()
 
 
-def _center_error(spline: SplineSDF, exact: Floats, bands: Floats) -> float:
+def result_of(
+    spline: SplineSDF,
+    *,
+    tolerance: float | None,
+    error: float,
+    bound: float | None,
+    history: tuple[FitStep, ...],
+    space: str,
+    operator: str,
+    stopped: Stopped,
+    bands: tuple[Band, ...] = (),
+) -> FitResult:
+    """The result whose last step is that of the history; its spline knows how it was made."""
+    last = history[-1]
+    made = Provenance(
+        tolerance=tolerance,
+        error=error,
+        bound=bound if bound is not None and np.isfinite(bound) else None,
+        bands=bands,
+        space=space,
+        operator=operator,
+        stopped=stopped,
+        evaluations=last.evaluations,
+    )
+    return FitResult(
+        spline=replace(spline, made=made),
+        tolerance=tolerance,
+        error=error,
+        centre_error=last.centre_error,
+        bound=made.bound,
+        cells=last.cells,
+        stopped=stopped,
+        history=history,
+        evaluations=last.evaluations,
+        bands=bands,
+    )
+
+
+def center_error(spline: SplineSDF, exact: Floats, bands: Floats) -> float:
     """The largest |s - u| at the centers of cells, those in a band if there are any."""
     middle = center_ordinates(spline.ordinates)[1]
     counts = np.full(len(middle), len(bands) == 0)

@@ -8,7 +8,6 @@ One round of `fit`, without a tolerance: what the source paper does on m x n cel
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from operator import index as as_whole
 
 import numpy as np
@@ -17,13 +16,11 @@ from numpy.typing import ArrayLike
 from splinesdf._arrays import Floats
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
-from splinesdf.fit import FitResult, FitStep
+from splinesdf.fit import FitResult, FitStep, center_error, result_of
 from splinesdf.measure import largest_error
 from splinesdf.meshes import Box, Grid
 from splinesdf.meshes.mesh import check_domain
-from splinesdf.provenance import Provenance
 from splinesdf.quasi import check_operator
-from splinesdf.spaces.cells import center_ordinates
 from splinesdf.trial import GridTrial
 
 # A million cells are 64 MB of ordinates: beyond it the counts are a slip. As in `fit`.
@@ -82,31 +79,19 @@ def interpolate(
     grid, space = _grid(shape, mesh, domain)
     trial = GridTrial(shape, grid, operator, space == "uniform")
     spline, count = trial.spline, len(grid.boxes)
-    middle = np.abs(center_ordinates(spline.ordinates)[1] - trial.center)
     low, high = largest_error(shape, spline, trial.center)
     # The bracket is half a percent wide, and a center may be where the error is largest.
-    center = float(middle.max())
+    center = center_error(spline, trial.center, np.empty((0, 2)))
     error, bound = max(low, center), max(high, center)
-    made = Provenance(
+    return result_of(
+        spline,
         tolerance=None,
         error=error,
-        bound=bound if np.isfinite(bound) else None,
-        bands=(),
+        bound=bound,
+        history=(FitStep(grid, count, error, center, trial.evaluations),),
         space=space,
         operator=operator,
         stopped="given",
-        evaluations=trial.evaluations,
-    )
-    return FitResult(
-        spline=replace(spline, made=made),
-        tolerance=None,
-        error=error,
-        centre_error=center,
-        bound=made.bound,
-        cells=count,
-        stopped="given",
-        history=(FitStep(grid, count, error, center, trial.evaluations),),
-        evaluations=trial.evaluations,
     )
 
 

@@ -154,7 +154,7 @@ def _until_nothing_is_left(
         )
     asked = offset_tolerance(shape, [size], tolerance, coarse=coarse)
     _check_rounding(shape, 0.0, asked)
-    steps = _deepest(shape) / -size
+    steps = _half_width(shape) / -size
     if steps > _MOST_STEPS:
         raise InputError(
             f"expected a step that is taken {_MOST_STEPS:,} times at most, got {step:g}, which may "
@@ -168,7 +168,7 @@ def _until_nothing_is_left(
     return result
 
 
-def _deepest(shape: Shape) -> float:
+def _half_width(shape: Shape) -> float:
     """No point inside is farther from the boundary."""
     xmin, ymin, xmax, ymax = shape.box
     return 0.5 * min(xmax - xmin, ymax - ymin)
@@ -176,7 +176,7 @@ def _deepest(shape: Shape) -> float:
 
 def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
     """The contours at one distance."""
-    if distance < -_deepest(shape) - tolerance:
+    if distance < -_half_width(shape) - tolerance:
         return []
     if is_far(shape, distance):
         return [replace(hull_offset(shape, distance, tolerance), tolerance=tolerance)]

@@ -149,22 +149,32 @@ def fit_figures(result: FitResult, shape: Shape, *, seconds: float) -> dict[str,
 
 def print_offsets(
     shape: Shape, contours: Sequence[Contour], distances: Iterable[float], tolerance: float
-) -> None:
-    """One line for each distance: loops, arcs, length, and how far off they are, measured."""
+) -> float:
+    """One line for each distance: loops, arcs, length, and how far off they are, measured.
+
+    Returns
+    -------
+    float
+        How far off they are at most.
+    """
+    worst = 0.0
     _print_line(f"offsets of {shape.name}, tolerance {tolerance:.4g}")
     table = _table()
     for name in ("distance", "loops", "arcs", "length", "deviation"):
         table.add_column(name, justify="right")
     for distance in dict.fromkeys(distances):
         here = [contour for contour in contours if contour.distance == distance]
+        off = deviation(shape, here)
+        worst = max(worst, off)
         table.add_row(
             f"{distance:+g}",
             str(len(here)),
             f"{sum(len(contour.arcs) for contour in here):,}",
             f"{sum(contour.length for contour in here):.6g}",
-            f"{deviation(shape, here):.3g}" if here else _why_nothing(shape, distance),
+            f"{off:.3g}" if here else _why_nothing(shape, distance),
         )
     _print_table(table)
+    return worst
 
 
 def _why_nothing(shape: Shape, distance: float) -> str:

@@ -12,8 +12,8 @@ from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import Arcs, Runs, assemble, ends, split
 from splinesdf.curves.crossings import control_points, degrees
-from splinesdf.curves.geometry import points_at, tangents_at
-from splinesdf.curves.parts import MERGE, Parts, cut_at_crossings
+from splinesdf.curves.geometry import tangents_at
+from splinesdf.curves.parts import MERGE, Parts, chain_ends, cut_at_crossings
 from splinesdf.curves.sides import bounding, look_at_sides
 from splinesdf.errors import InputError
 
@@ -109,14 +109,9 @@ def _meeting_points(outline: Arclets, parts: Parts, keep: Bools, near: float) ->
 
     Those of chains that are dropped or no longer than a few times ``near`` stay where they are.
     """
+    points = chain_ends(outline, parts)
     first = np.flatnonzero(parts.place == 0)
     last = np.append(first[1:], len(parts.chain)) - 1
-    points = np.stack(
-        [
-            points_at(outline, parts.arclet[first], parts.interval[first, 0]),
-            points_at(outline, parts.arclet[last], parts.interval[last, 1]),
-        ]
-    )
     middle = parts.arclet[(first + last) // 2]
     reach = np.maximum(
         np.hypot(*(outline.start[middle] - points[0]).T),

@@ -52,3 +52,26 @@ def angles(first: Floats, second: Floats) -> Floats:
     """How far to turn left from one direction (n, 2) to the other, in (-pi, pi]: (n,)."""
     cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
     return np.asarray(np.arctan2(cross, np.sum(first * second, axis=1)))
+
+
+def off_chord(points: Floats) -> Floats:
+    """How far the middle ones of points (n, k, 2) are off the lines through the others: (n,)."""
+    chord, apart = points[:, -1] - points[:, 0], points[:, 1:-1] - points[:, :1]
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    cross = np.abs(chord[:, None, 0] * apart[..., 1] - chord[:, None, 1] * apart[..., 0])
+    far = np.hypot(apart[..., 0], apart[..., 1]).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = cross.max(axis=1) / length
+    return np.asarray(np.where(length > 0.0, off, far))
+
+
+def bezier_points(control: Floats, t: Floats) -> tuple[Floats, Floats]:
+    """Points and derivatives of pieces (..., degree + 1, 2) at parameters (...)."""
+    grid = np.broadcast_shapes(control.shape[:-2], t.shape)
+    points = np.broadcast_to(control, (*grid, *control.shape[-2:]))
+    t = t[..., None, None]
+    degree = points.shape[-2] - 1
+    while points.shape[-2] > 2:
+        points = (1.0 - t) * points[..., :-1, :] + t * points[..., 1:, :]
+    start, end = points[..., 0, :], points[..., 1, :]
+    return start + t[..., 0] * (end - start), degree * (end - start)

@@ -87,3 +87,15 @@ def _in_chains(outline: Arclets, arclet: Ints, interval: Floats, begin: Bools) -
         closed=closed_loop[loop[firsts]],
         following=following,
     )
+
+
+def chain_ends(outline: Arclets, parts: Parts) -> Floats:
+    """Where each chain starts and ends, as it was drawn: (2, n_chains, 2)."""
+    first = np.flatnonzero(parts.place == 0)
+    last = np.append(first[1:], len(parts.chain)) - 1
+    return np.stack(
+        [
+            points_at(outline, parts.arclet[first], parts.interval[first, 0]),
+            points_at(outline, parts.arclet[last], parts.interval[last, 1]),
+        ]
+    )

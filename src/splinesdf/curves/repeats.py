@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints, largest_coordinate
+from splinesdf.curves.geometry import bezier_points
 
 # Curves nearer than this share of the largest coordinate coincide: what rounding, transforms and
 # compiled pieces can put between them, and what the boundary of a drawing takes for touching.
@@ -120,7 +121,7 @@ def _sums(loops: Sequence[Sequence[Floats]]) -> Floats:
         control = np.stack([pieces[k] for k in chosen])
         nodes, weights = np.polynomial.legendre.leggauss(2 * int(count))
         weights = 0.5 * weights
-        points, slopes = _evaluated(control[:, None], 0.5 + 0.5 * nodes[None])
+        points, slopes = bezier_points(control[:, None], 0.5 + 0.5 * nodes[None])
         x, y = points[..., 0], points[..., 1]
         cross = x * slopes[..., 1] - y * slopes[..., 0]
         whole = owner[chosen]
@@ -130,18 +131,6 @@ def _sums(loops: Sequence[Sequence[Floats]]) -> Floats:
         np.add.at(total[:, 3], whole, np.hypot(slopes[..., 0], slopes[..., 1]) @ weights)
         np.maximum.at(total[:, 4], whole, np.abs(control).max(axis=(1, 2)))
     return total
-
-
-def _evaluated(control: Floats, t: Floats) -> tuple[Floats, Floats]:
-    """Points and derivatives of pieces (..., degree + 1, 2) at parameters (...)."""
-    grid = np.broadcast_shapes(control.shape[:-2], t.shape)
-    points = np.broadcast_to(control, (*grid, *control.shape[-2:]))
-    t = t[..., None, None]
-    degree = points.shape[-2] - 1
-    while points.shape[-2] > 2:
-        points = (1.0 - t) * points[..., :-1, :] + t * points[..., 1:, :]
-    start, end = points[..., 0, :], points[..., 1, :]
-    return start + t[..., 0] * (end - start), degree * (end - start)
 
 
 def same_curve(one: Sequence[Floats], other: Sequence[Floats], near: float) -> bool:
@@ -188,10 +177,10 @@ def _elevated(control: Floats, degree: int) -> Floats:
 
 def _lies_on(one: Floats, other: Floats, near: float) -> bool:
     """Whether points of all pieces (n, degree + 1, 2) of a contour lie on another one."""
-    points, _ = _evaluated(one[:, None], np.linspace(0.0, 1.0, _POINTS, endpoint=False)[None])
+    points, _ = bezier_points(one[:, None], np.linspace(0.0, 1.0, _POINTS, endpoint=False)[None])
     points = points.reshape(-1, 2)
     starts = (np.arange(_STARTS) + 0.5) / _STARTS
-    samples, _ = _evaluated(other[:, None], starts[None])
+    samples, _ = bezier_points(other[:, None], starts[None])
     samples = samples.reshape(-1, 2)
     found = np.empty(len(points), dtype=np.int64)
     block = max(1, _MOST_PAIRS // len(samples))
@@ -203,10 +192,10 @@ def _lies_on(one: Floats, other: Floats, near: float) -> bool:
         piece = (found // _STARTS + beside) % len(other)
         t = starts[found % _STARTS] if beside == 0 else np.full(len(points), 0.5 - 0.5 * beside)
         for _ in range(_STEPS):
-            place, slope = _evaluated(other[piece], t)
+            place, slope = bezier_points(other[piece], t)
             square = np.maximum(np.sum(slope * slope, axis=1), np.finfo(np.float64).tiny)
             t = np.clip(t - np.sum((place - points) * slope, axis=1) / square, 0.0, 1.0)
-        place, _ = _evaluated(other[piece], t)
+        place, _ = bezier_points(other[piece], t)
         least = np.minimum(least, np.hypot(*(place - points).T))
     return bool(np.all(least <= near))
 

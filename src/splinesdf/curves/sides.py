@@ -13,7 +13,7 @@ import numpy as np
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver
 from splinesdf.curves.geometry import points_at, tangents_at
-from splinesdf.curves.parts import MERGE, Parts
+from splinesdf.curves.parts import MERGE, Parts, chain_ends
 
 # Parts of a chain, its longest ones, in which a clear place is looked for, and where in each.
 _PARTS = 3
@@ -150,14 +150,7 @@ def _doubtful_runs(
 
 def _repeated(outline: Arclets, parts: Parts, sides: Sides, keep: Bools, touching: float) -> Bools:
     """Chains that lie on top of an earlier one that is kept, from end to end."""
-    first = np.flatnonzero(parts.place == 0)
-    last = np.append(first[1:], len(parts.chain)) - 1
-    ends = np.stack(
-        [
-            points_at(outline, parts.arclet[first], parts.interval[first, 0]),
-            points_at(outline, parts.arclet[last], parts.interval[last, 1]),
-        ]
-    )
+    ends = chain_ends(outline, parts)
     chain = np.flatnonzero(sides.partner >= 0)
     # The part in which the partner's parameter lies, and so the chain.
     order = np.lexsort((parts.interval[:, 0], parts.arclet))

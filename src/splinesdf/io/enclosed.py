@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
+from splinesdf.curves.geometry import bezier_points
 from splinesdf.curves.shape import Shape
 from splinesdf.distance import signed_distance
 
@@ -222,7 +223,7 @@ def _march(
     for d in np.unique(degree).tolist():
         rows = np.flatnonzero(degree == d)
         control = shape.control[shape.starts[piece[rows], None] + np.arange(d + 1)]
-        points[rows], ways = _on_piece(control, t[rows, None, None])
+        points[rows], ways = bezier_points(control, t[rows])
         normals[rows] = np.stack([-ways[:, 1], ways[:, 0]], -1)
     length = np.hypot(normals[:, 0], normals[:, 1])
     # Where the curve stands still there is no normal, and any direction does no harm.
@@ -233,14 +234,6 @@ def _march(
         normals = normals * sides[:, None]
     marched = points + abs(distance) * normals
     return marched, normals, np.abs(signed_distance(shape, marched) - distance)
-
-
-def _on_piece(control: Floats, t: Floats) -> tuple[Floats, Floats]:
-    """Points of Bézier pieces and directions there: (n, d + 1, 2), (n, 1, 1) -> 2 of (n, 2)."""
-    while control.shape[1] > 2:
-        control = (1.0 - t) * control[:, :-1] + t * control[:, 1:]
-    ways = control[:, 1] - control[:, 0]
-    return control[:, 0] + t[:, 0] * ways, ways
 
 
 def _fans(shape: Shape, distance: float) -> tuple[Floats, Floats, Floats]:

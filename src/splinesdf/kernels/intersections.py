@@ -178,15 +178,7 @@ def _meet(
     control = np.empty(8)
     spans = np.empty((_DEPTH + 2, 2))
     spans[0, 0], spans[0, 1] = low, high
-    # At a joint the offset is zero; what it is beside that tells whether the arcs meet once more.
-    joint_low = joint_high = np.nan
-    if joined or back:
-        t = 1.0 if joined else 0.0
-        x, y = _point(arcs, i, t)
-        if x * ux + y * uy <= low + tolerance:
-            joint_low = low
-        if x * ux + y * uy >= high - tolerance:
-            joint_high = high
+    least, most = low, high
     size = 1
     while size > 0:
         size -= 1
@@ -212,18 +204,17 @@ def _meet(
             if control[k] != 0.0:
                 last = control[k]
         at_low, at_high = values[0], values[7]
-        if low == joint_low:
+        # Zero in an end, as in a joint: what is beside it tells whether the arcs cross again.
+        if low == least and at_low == 0.0:
             at_low = _beside(control, 0, tolerance)
-        if high == joint_high:
+        if high == most and at_high == 0.0:
             at_high = _beside(control, 7, tolerance)
         # A zero where two halves meet belongs to one of them.
         crosses = (at_low < 0.0) != (at_high < 0.0)
         if smallest > 2.0 * miss or largest < -2.0 * miss:
             continue
         flat = max(largest, -smallest) + miss <= tolerance
-        # Beside a zero in an end, as in a joint, a change of sign is one more root.
-        alone = changes == 0 or (values[0] != 0.0 and values[7] != 0.0)
-        fits = miss <= 0.25 * tolerance and alone
+        fits = miss <= 0.25 * tolerance
         if flat or (fits and changes <= 1) or high - low <= tolerance or size + 2 > _DEPTH:
             if crosses:
                 u = 0.5 * (low + high)

@@ -13,7 +13,7 @@ import numpy as np
 from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import ROUND, STRAIGHT
 from splinesdf.contour import Contour
-from splinesdf.curves.geometry import points_at
+from splinesdf.curves.geometry import off_chord, points_at
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
 
@@ -58,11 +58,12 @@ def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
         )
     centers, radii = _disks(shape, tolerance)
     normal = _tangents(centers, radii)
-    arcs, weights = [], []
+    arcs, weights, lines = [], [], []
     for center, radius, before, after in zip(
         centers, radii + distance, np.roll(normal, 1, axis=0), normal, strict=True
     ):
         turn = math.atan2(before[0] * after[1] - before[1] * after[0], float(before @ after))
+        # Corners turn by less than half a turn; a circle may be seen from nearly all around.
         turn += 2.0 * math.pi if len(centers) == 1 or (turn < 0.0 and radius > distance) else 0.0
         count = max(1, math.ceil(turn / _QUARTER))
         angles = math.atan2(before[1], before[0]) + turn * np.arange(2 * count + 1) / (2 * count)
@@ -74,11 +75,11 @@ def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
         arcs += [around[k : k + 3] for k in range(0, 2 * count, 2)]
         weights += [weight] * count
         if len(centers) > 1:
-            arcs.append(np.stack([around[-1]] * 3))  # the line to the next one, see below
+            lines.append(len(arcs))
+            arcs.append(np.stack([around[-1]] * 3))  # where it leads to is known below
             weights.append(1.0)
     every = np.stack(arcs)
     every[:, 2] = np.roll(every[:, 0], -1, axis=0)
-    lines = np.flatnonzero((every[:, 0] == every[:, 1]).all(axis=1))
     every[lines, 1] = 0.5 * (every[lines, 0] + every[lines, 2])
     every += shape.boundary.origin
     return Contour(every, np.array(weights), distance=distance, y_down=shape.y_down)
@@ -102,34 +103,20 @@ def _disks(shape: Shape, tolerance: float) -> tuple[Floats, Floats]:
     with np.errstate(invalid="ignore"):
         apart = np.hypot(*(center[following] - center).T)
     same = round_ & round_[following] & (apart <= _SAME * shape.size)
-    # Turned so that no circle, and no chain of corners, goes on from the last one to the first.
-    breaks = np.flatnonzero(~same & (same[following] | np.roll(same, 1)))
-    if same.all():
-        return center[:1], np.hypot(*(corners[:1] - center[:1]).T)
-    turned = (
-        np.roll(np.arange(len(hull)), -(int(breaks[0]) + 1))
-        if len(breaks)
-        else np.arange(len(hull))
-    )
+    # A corner on a circle has another one of it before or behind it.
+    before = np.roll(same, 1)
+    on_circle = same | before
+    begins = np.flatnonzero(~before & (on_circle | np.roll(on_circle, 1)))
+    order = np.roll(np.arange(len(hull)), -begins[0]) if len(begins) else np.arange(len(hull))
     centers, radii = [], []
-    first = 0
-    while first < len(turned):
-        last = first
-        on_circle = bool(same[turned[first]])
-        while last + 1 < len(turned) and (
-            same[turned[last]] if on_circle else not same[turned[last + 1]]
-        ):
-            last += 1
-        rows = turned[first : last + 1]
-        if on_circle:
+    for rows in np.split(order, (begins - begins[:1])[1:]):
+        if on_circle[rows[0]]:
             about = center[rows].mean(axis=0)
             centers.append(about[None])
             radii.append(np.array([np.hypot(*(corners[rows] - about).T).mean()]))
         else:
-            kept = _fewer(corners[rows], _FEWER * tolerance)
-            centers.append(kept)
-            radii.append(np.zeros(len(kept)))
-        first = last + 1
+            centers.append(_fewer(corners[rows], _FEWER * tolerance))
+            radii.append(np.zeros(len(centers[-1])))
     return np.concatenate(centers), np.concatenate(radii)
 
 
@@ -187,20 +174,15 @@ def _fewer(chain: Floats, apart: float) -> Floats:
     while first < count - 1:
         low, high = first + 1, min(first + 2, count - 1)
         # As far as can be: doubled while it fits, then halved.
-        while high > low and _within(chain[first : high + 1], apart):
+        while high > low and off_chord(chain[first : high + 1][None])[0] <= apart:
             low, high = high, min(first + 2 * (high - first), count - 1)
         while high - low > 1:
             middle = (low + high) // 2
             low, high = (
-                (middle, high) if _within(chain[first : middle + 1], apart) else (low, middle)
+                (middle, high)
+                if off_chord(chain[first : middle + 1][None])[0] <= apart
+                else (low, middle)
             )
         kept.append(low)
         first = low
     return chain[kept]
-
-
-def _within(points: Floats, apart: float) -> bool:
-    chord, off = points[-1] - points[0], points - points[0]
-    length = float(np.hypot(*chord))
-    across = np.abs(chord[0] * off[:, 1] - chord[1] * off[:, 0]).max()
-    return length > 0.0 and bool(across <= apart * length)

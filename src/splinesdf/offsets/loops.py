@@ -56,6 +56,7 @@ class Loose(NamedTuple):
     points: Floats  # (2, n, 6) what `parallels` has at starts and ends, moved along
     one: Ints  # (m,) whose ends
     other: Ints  # (m,) whose starts, one for each
+    sizes: Floats  # (n,) of the boundary's loop that each is about
 
 
 class Loops(NamedTuple):
@@ -74,20 +75,21 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     """Join stretches to loops, or None if one end finds no start within the tolerance."""
     smooth = smooth_turn(distance, tolerance)
     follows = _run_on(shape, stretches, distance, smooth)
+    sizes = loop_sizes(shape, distance)
     if distance:  # the boundary itself is on neither side
-        stretches, follows = _without_wrong_sides(shape, stretches, follows, distance)
+        stretches, follows = _without_wrong_sides(shape, stretches, follows, distance, sizes)
     if not len(follows):
         return _as_loops(stretches, follows, np.empty((2, 0, 6)), np.empty((0, 5)))
     spans = stretches.spans.copy()
     points = np.stack([parallels(shape, stretches.elements, at, distance) for at in spans.T])
     ends, starts = np.flatnonzero(follows < 0), np.flatnonzero(_led_to_by_none(follows))
-    own = loop_sizes(shape, distance)[stretches.elements[:, 0]]
+    own = sizes[stretches.elements[:, 0]]
     farthest = max(tolerance, _SHALLOW * float(own.max(initial=0.0)))
     which = _matched(points[1, ends, :2], points[0, starts, :2], farthest)
     if which is None:
         return None
     follows[ends] = starts[which]
-    loose = Loose(stretches.elements, spans, points, ends, follows[ends])
+    loose = Loose(stretches.elements, spans, points, ends, follows[ends], own)
     _draw_back(shape, loose, distance)
     _to_crossings(shape, loose, distance)
     _fill_in(shape, loose, distance, smooth)
@@ -95,7 +97,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     if bridges is None:
         return None
     loops = _as_loops(Stretches(stretches.elements, spans), follows, points, bridges)
-    return _without_specks(shape, loops, distance, tolerance)
+    return _without_specks(loops, sizes, tolerance)
 
 
 def _run_on(shape: Shape, stretches: Stretches, distance: float, smooth: float) -> Ints:
@@ -122,7 +124,7 @@ def _led_to_by_none(follows: Ints) -> Bools:
 
 
 def _without_wrong_sides(
-    shape: Shape, stretches: Stretches, follows: Ints, distance: float
+    shape: Shape, stretches: Stretches, follows: Ints, distance: float, sizes: Floats
 ) -> tuple[Stretches, Ints]:
     """Without stretches on the wrong side, next to what is too thin for its sides to be told.
 
@@ -137,7 +139,7 @@ def _without_wrong_sides(
             parallels(shape, stretches.elements[asked], at, distance)[:, :2]
             for at in stretches.spans[asked].T
         )
-        own = loop_sizes(shape, distance)[stretches.elements[asked, 0]]
+        own = sizes[stretches.elements[asked, 0]]
         asked = asked[np.hypot(*(last - first).T) < _SHORT * own]
     if len(asked):
         middles = stretches.spans[asked].mean(axis=1)
@@ -190,7 +192,7 @@ def _to_crossings(shape: Shape, loose: Loose, distance: float) -> None:
     Trimming leaves both ends at nearly the same point, each to rounding over the sine of the angle
     between them.
     """
-    elements, spans, points, one, other = loose
+    elements, spans, points, one, other, _ = loose
     a, b = spans[one, 1].copy(), spans[other, 0].copy()
     at_a, at_b = points[1, one].copy(), points[0, other].copy()
     gap = at_b[:, :2] - at_a[:, :2]
@@ -225,7 +227,7 @@ def _fill_in(shape: Shape, loose: Loose, distance: float, smooth: float) -> None
 
     So they are beside a point of the shape in which another branch touches this one.
     """
-    elements, spans, points, one, other = loose
+    elements, spans, points, one, other, sizes = loose
     (i, corner), (j, other_corner) = elements[one].T, elements[other].T
     end, start = spans[one, 1], spans[other, 0]
     same = (i == j) & (end < start)
@@ -233,7 +235,7 @@ def _fill_in(shape: Shape, loose: Loose, distance: float, smooth: float) -> None
     next_ = (joints.following[i] == j) & (np.abs(joints.turn[i]) <= smooth)
     gap = np.hypot(*(points[0, other, :2] - points[1, one, :2]).T)
     cut = (corner + other_corner == 0) & (same | next_) & (gap > 0.0)
-    cut &= gap <= _SHALLOW * loop_sizes(shape, distance)[i]
+    cut &= gap <= _SHALLOW * sizes[one]
     one, other, same, middle = one[cut], other[cut], same[cut], 0.5 * (end + start)[cut]
     if not len(one):
         return
@@ -253,11 +255,11 @@ def _draw_back(shape: Shape, loose: Loose, distance: float) -> None:
 
     Next to a cusp parallels turn back so shortly that rounding hides where they cross.
     """
-    elements, spans, points, one, other = loose
+    elements, spans, points, one, other, sizes = loose
     gap = points[0, other, :2] - points[1, one, :2]
     length = np.hypot(*gap.T)
     ahead, leaving = points[1, one, 2:4], points[0, other, 2:4]
-    near = _SHALLOW * loop_sizes(shape, distance)[elements[one, 0]]
+    near = _SHALLOW * sizes[one]
     back = (np.sum(gap * ahead, axis=1) < -0.5 * length) & (length <= near)
     back &= np.abs(angles(ahead, leaving)) <= _OVERLAP
     for a, b, away in zip(one[back], other[back], length[back], strict=True):
@@ -341,23 +343,23 @@ def _as_loops(stretches: Stretches, follows: Ints, points: Floats, bridges: Floa
     )
 
 
-def _without_specks(shape: Shape, loops: Loops, distance: float, tolerance: float) -> Loops:
+def _without_specks(loops: Loops, sizes: Floats, tolerance: float) -> Loops:
     """Without loops that are smaller both ways than what rounding may leave."""
     if len(loops.first) < 2:
         return loops
     arclet = loops.elements[:, 0]
-    own = np.where(arclet < 0, 0.0, loop_sizes(shape, distance)[arclet])
+    own = np.where(arclet < 0, 0.0, sizes[arclet])
     own = np.maximum.reduceat(own, loops.first[:-1])
     least = np.maximum(_LEAST * tolerance, _SPECK * own)
     low = np.minimum.reduceat(loops.start, loops.first[:-1])
     high = np.maximum.reduceat(loops.start, loops.first[:-1])
-    sizes = np.diff(loops.first)
+    rows_each = np.diff(loops.first)
     # One row alone that is a loop is a speck: none turns by a full turn.
     kept = (high - low).max(axis=1) > least
     if kept.all():
         return loops
-    rows = np.repeat(kept, sizes)
-    first = np.concatenate([[0], np.cumsum(sizes[kept])])
+    rows = np.repeat(kept, rows_each)
+    first = np.concatenate([[0], np.cumsum(rows_each[kept])])
     return Loops(
         loops.elements[rows],
         loops.spans[rows],

@@ -12,7 +12,7 @@ import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import FREE, ROUND, STRAIGHT, Runs
-from splinesdf.curves.geometry import angles
+from splinesdf.curves.geometry import angles, off_chord
 from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops
 from splinesdf.offsets.trimmed import parallels
@@ -97,19 +97,8 @@ def _kinds(
     ]
     # What is a line or a circle to rounding need not have a parallel that is, far from it.
     points = np.stack([loops.start, middle, loops.end], axis=1)
-    off = np.where(kind == ROUND, _off_circle(points[:, 1:2], points, center), _off_chord(points))
+    off = np.where(kind == ROUND, _off_circle(points[:, 1:2], points, center), off_chord(points))
     return np.where(~bridge & (off > allowed), FREE, kind), center, middle
-
-
-def _off_chord(points: Floats) -> Floats:
-    """How far the middle ones of points (n, k, 2) are off the lines through the others: (n,)."""
-    chord, apart = points[:, -1] - points[:, 0], points[:, 1:-1] - points[:, :1]
-    length = np.hypot(chord[:, 0], chord[:, 1])
-    cross = np.abs(chord[:, None, 0] * apart[..., 1] - chord[:, None, 1] * apart[..., 0])
-    far = np.hypot(apart[..., 0], apart[..., 1]).max(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        off = cross.max(axis=1) / length
-    return np.asarray(np.where(length > 0.0, off, far))
 
 
 def _off_circle(some: Floats, points: Floats, center: Floats) -> Floats:
@@ -129,7 +118,7 @@ def _bent(points: Floats, center: Floats, kind: Ints, ends: Bools, allowed: floa
             continue
         if kind[a] == STRAIGHT:
             chain = np.concatenate([points[a : a + 1, 0], points[a:b, 2]])
-            if _off_chord(chain[None])[0] > allowed:
+            if off_chord(chain[None])[0] > allowed:
                 result[a + _straight_parts(chain, allowed)] = True
             continue
         if (
