@@ -55,6 +55,25 @@ def test_what_touches_in_a_point_has_one_corner_for_each_wedge(distance: float) 
     assert len(shape.joints_outside.loops) - 1 == 1
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_corner_on_a_slanted_side_is_one_point_with_it(seed: int) -> None:
+    # Nowhere near round numbers: the corner is on the side to rounding only.
+    random = np.random.default_rng(seed)
+    c, s = np.cos(seed + 0.3), np.sin(seed + 0.3)
+    turn, shift = np.array([[c, s], [-s, c]]), random.uniform(-50.0, 50.0, 2)
+    one = np.array([(0.0, 0.0), (10.0, 0.0), (3.0, 8.0)])
+    other = np.array([(0.0, 0.0), (-1.5, -3.0), (2.0, -4.0)])
+    other[:, 0] += random.uniform(2.0, 8.0)
+    loops = [np.stack([p, np.roll(p, -1, axis=0)], 1) @ turn + shift for p in (one, other)]
+    shape = ss.Shape.from_pieces([list(loop) for loop in loops])
+    assert len(shape.joints.loops) - 1 == 2
+    assert len(shape.joints_outside.loops) - 1 == 1
+    for distance in (0.3, -0.3):
+        contours = ss.offset(shape, distance, tolerance=1e-4)
+        assert deviation(shape, contours) < 1e-12 * 50.0
+        assert not any(contour.fitted for contour in contours)
+
+
 @pytest.mark.parametrize("sizes", [1e5, 1e7, 1e9])
 @pytest.mark.parametrize("name", ["gamma2", "square", "stadium"])
 def test_far_offsets_are_those_of_the_hull(name: str, sizes: float) -> None:

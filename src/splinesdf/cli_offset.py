@@ -156,7 +156,7 @@ def _contours(
         if -max(wanted) > high:
             raise ss.InputError(
                 f"nothing to write: no point of the plane is at {listed}, the deepest is at "
-                f"{-low:.4g}: ask for a distance nearer to the boundary"
+                f"about {-low:.2g}: ask for a distance nearer to the boundary"
             )
         _nothing(source, wanted, tolerance)
         raise ss.InputError(

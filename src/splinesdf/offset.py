@@ -89,8 +89,6 @@ def offset(
     ----------
     [Wang2014] section 5: an offset's swallowed parts are no part of a level set.
     """
-    if tolerance is not None:
-        tolerance = positive(tolerance, "tolerance")
     if step is not None:
         if distances is not None:
             raise InputError("expected distances or a step, got both")
@@ -113,11 +111,12 @@ def offset_tolerance(
     Raises
     ------
     InputError
-        If it is above a quarter of the smallest distance, unless ``coarse``.
+        If it is not positive, or above a quarter of the smallest distance, unless ``coarse``.
     """
     smallest = min((abs(d) for d in distances if d), default=math.inf)
     if tolerance is None:
         return min(_OF_SIZE * shape.size, _OF_DISTANCE * smallest)
+    tolerance = positive(tolerance, "tolerance")
     if tolerance > _COARSE * smallest and not coarse:
         raise InputError(
             f"expected a tolerance of at most a quarter of the smallest distance, "
