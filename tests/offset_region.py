@@ -29,6 +29,7 @@ import shapely
 import splinesdf as ss
 from splinesdf.contour import Contour
 from tests import oracles
+from tests.flat_contours import Line, flattened, on_arcs, winding_number
 from tests.offset_checks import Verdict
 from tests.offset_count import loop_counts as quadtree_counts
 
@@ -50,8 +51,8 @@ SWEPT, SEGMENTS = 3e-5, 40
 PLACES, BESIDE, GRID = 800, 400, 40
 # How far from the level test points lie, in tolerances, and how near they may turn out to be.
 OFF, NEAR = 2.0, 1.5
-# A chord's part of the tolerance, and the most halvings of an arc's parameter: 2^18 chords.
-CHORD, HALVINGS = 0.125, 18
+# A chord's part of the tolerance.
+CHORD = 0.125
 
 
 def slack(shape: ss.Shape, distance: float) -> float:
@@ -97,41 +98,8 @@ def judge_region(
     judge = Judge(here, distance, allowed)
     judge.deviation(verdict, contours, origin)
     judge.sides(verdict, lines, seed)
-    judge.enclosed(verdict, lines)
+    judge.enclosed(verdict, [line.points for line in lines])
     return verdict
-
-
-def flattened(contour: Contour, origin: np.ndarray, sag: float) -> np.ndarray:
-    """A contour as a closed polyline, moved: each arc halved till chords are within ``sag``."""
-    arcs, weights = contour.arcs - origin, contour.weights
-    count = np.ones(len(arcs), dtype=np.int64)
-    left = np.arange(len(arcs))
-    for _ in range(HALVINGS):
-        t = np.linspace(0.0, 1.0, 2 * int(count[left].max(initial=1)) + 1)
-        points = on_arcs(arcs[left], weights[left], t)
-        start, middle, end = points[:, :-1:2], points[:, 1::2], points[:, 2::2]
-        off = np.linalg.norm(middle - 0.5 * (start + end), axis=-1).max(axis=1, initial=0.0)
-        left = left[off > sag]
-        if len(left) == 0:
-            break
-        count[left] *= 2
-    parts: list[np.ndarray] = [np.empty((0, 2))] * len(arcs)
-    for number in np.unique(count).tolist():
-        rows = np.flatnonzero(count == number)
-        t = np.linspace(0.0, 1.0, number + 1)[:-1]
-        for row, points in zip(rows, on_arcs(arcs[rows], weights[rows], t), strict=True):
-            parts[row] = points
-    line = np.concatenate(parts)
-    return np.concatenate([line, line[:1]])
-
-
-def on_arcs(arcs: np.ndarray, weights: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Rational quadratic Bézier curves at parameters: (n, 3, 2), (n,), (m,) -> (n, m, 2)."""
-    basis = np.stack([(1.0 - t) ** 2, 2.0 * t * (1.0 - t), t**2])  # (3, m)
-    heavy = np.stack([np.ones_like(weights), weights, np.ones_like(weights)], axis=1)  # (n, 3)
-    parts = heavy[:, :, None] * basis
-    result: np.ndarray = np.einsum("nkm,nkd->nmd", parts, arcs) / parts.sum(axis=1)[..., None]
-    return result
 
 
 @dataclass(frozen=True)
@@ -174,15 +142,16 @@ class Judge:
         chosen = np.random.default_rng(1).integers(len(points), size=min(200, len(points)))
         self.exact(verdict, points[chosen])
 
-    def sides(self, verdict: Verdict, lines: Sequence[np.ndarray], seed: int) -> None:
+    def sides(self, verdict: Verdict, contours: Sequence[Line], seed: int) -> None:
         """The winding number is 1 below the level and 0 above it."""
+        lines = [contour.points for contour in contours]
         points = np.concatenate(
             [self.about_the_level(seed), self.about(lines, seed), self.everywhere(lines)]
         )
         above = self.exact(verdict, points) - self.distance
         clear = np.abs(above) > NEAR * self.allowed
         points, above = points[clear], above[clear]
-        number = oracles.winding_number(lines, points)
+        number = winding_number(contours, points, CHORD * self.allowed)
         for kind, wrong in (
             ("lost", (above < 0.0) & (number == 0)),
             ("spurious", (above > 0.0) & (number == 1)),
@@ -270,7 +239,13 @@ class Judge:
         return float(join(found[0], near).area)
 
     def loop_counts(self) -> set[int]:
-        """The number of loops, at two finenesses and at distances a little off."""
+        """The number of loops, at two finenesses and at distances a little off.
+
+        Farther out than any point of the shape is from the middle of its box, all disks have that
+        point in them: their union is a star about it, with one boundary.
+        """
+        if self.distance > self.shape.size:
+            return {1}
         near = OFF * self.allowed + BUFFER * abs(self.distance)
         near += 2.0 * FINENESS[0][0] * self.shape.size
         counts = set()

@@ -17,7 +17,8 @@ import splinesdf as ss
 from benchmarks.offset_cases import beside, made, moved
 from splinesdf.contour import Contour
 from splinesdf.io.written import measure_file
-from tests.offset_region import home, on_arcs, slack
+from tests.flat_contours import on_arcs
+from tests.offset_region import home, slack
 
 WORDS = {
     "curve": "gamma('gamma2')",

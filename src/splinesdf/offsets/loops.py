@@ -84,7 +84,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     points = np.stack([parallels(shape, stretches.elements, at, distance) for at in spans.T])
     ends, starts = np.flatnonzero(follows < 0), np.flatnonzero(_led_to_by_none(follows))
     own = sizes[stretches.elements[:, 0]]
-    farthest = max(tolerance, _SHALLOW * float(own.max(initial=0.0)))
+    farthest = max(tolerance, _SHALLOW * (float(own.max(initial=0.0)) + abs(distance)))
     which = _matched(points[1, ends, :2], points[0, starts, :2], farthest)
     if which is None:
         return None
