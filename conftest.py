@@ -50,4 +50,6 @@ def _drop_stale_kernels() -> None:
                 compiled.unlink()
 
 
-_drop_stale_kernels()
+# Once, before any worker loads one.
+if "PYTEST_XDIST_WORKER" not in os.environ:
+    _drop_stale_kernels()

@@ -61,6 +61,7 @@ def slack(shape: ss.Shape, distance: float) -> float:
     return ULPS * float(np.spacing(largest))
 
 
+@lru_cache(maxsize=8)
 def home(shape: ss.Shape) -> tuple[ss.Shape, np.ndarray]:
     """The shape moved so that its smallest loop is at the origin, and by how much it was moved.
 
@@ -214,29 +215,16 @@ class Judge:
         if np.isnan(room):
             verdict.undecided.append("GEOS fills nothing")
             return
-        if abs(area - areas[1]) > room and abs(area - self.swept_area()) > room:
+        if abs(area - areas[1]) > room and abs(area - swept_area(self.shape, self.distance)) > room:
             text = f"{area:.9g} instead of {areas[1]:.9g}, {abs(area - areas[1]) / room:.3g}"
             verdict.fail("area", f"{text} times what is allowed")
         counts = self.loop_counts()
         if not min(counts) <= len(lines) <= max(counts):
-            counts = set(quadtree_counts(self.shape, self.distance))
+            counts = set(slow_counts(self.shape, self.distance))
         if not min(counts) <= len(lines) <= max(counts):
             verdict.fail("loops", f"{len(lines)} instead of {sorted(counts)}")
         elif len(counts) > 1:
             verdict.undecided.append(f"{len(lines)} loops, may be any of {sorted(counts)}")
-
-    def swept_area(self) -> float:
-        """The area once more, slowly, without GEOS's buffers: they fail with two finenesses alike.
-
-        Of a union of rectangles along all sides and sectors at all corners.
-        """
-        found = filled(self.shape, SWEPT)
-        assert found is not None
-        if self.distance == 0.0:
-            return float(found[0].area)
-        near = shapely.union_all(swept(found[1], abs(self.distance)))
-        join = shapely.union if self.distance > 0.0 else shapely.difference
-        return float(join(found[0], near).area)
 
     def loop_counts(self) -> set[int]:
         """The number of loops, at two finenesses and at distances a little off.
@@ -265,6 +253,24 @@ def region(
         return None if found is None else found[0]
     near = shapely.buffer(found[1], abs(distance), quad_segs=segments)
     return shapely.union(found[0], near) if distance > 0.0 else shapely.difference(found[0], near)
+
+
+@lru_cache(maxsize=8)
+def swept_area(shape: ss.Shape, distance: float) -> float:
+    """The area once more, slowly, without GEOS's buffers: they fail with two finenesses alike.
+
+    Of a union of rectangles along all sides and sectors at all corners.
+    """
+    found = filled(shape, SWEPT)
+    assert found is not None
+    if distance == 0.0:
+        return float(found[0].area)
+    near = shapely.union_all(swept(found[1], abs(distance)))
+    join = shapely.union if distance > 0.0 else shapely.difference
+    return float(join(found[0], near).area)
+
+
+slow_counts = lru_cache(maxsize=8)(quadtree_counts)
 
 
 @lru_cache(maxsize=8)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,12 +18,17 @@ from tests.test_offset_checks import reversed_, ring
 TOLERANCE = 1e-4
 
 
+@cache
+def washer(sizes: float) -> ss.Shape:
+    """The washer moved; the same object each time, so that the judge asks GEOS once."""
+    here = parts()["washer"]
+    return replace(here, control=here.control + 22.0 * sizes)
+
+
 def kinds(contours: list[Contour], d: float, *, sizes: float = 0.0) -> set[str]:
     """What is found of the washer's contours; both moved by so many sizes."""
-    washer, by = parts()["washer"], 22.0 * sizes
-    there = replace(washer, control=washer.control + by)
-    moved = [replace(c, arcs=c.arcs + by, parent=None) for c in contours]
-    return judge_region(there, moved, d, TOLERANCE).kinds
+    moved = [replace(c, arcs=c.arcs + 22.0 * sizes, parent=None) for c in contours]
+    return judge_region(washer(sizes), moved, d, TOLERANCE).kinds
 
 
 @pytest.mark.parametrize("sizes", [0.0, 1e3, 1e6])

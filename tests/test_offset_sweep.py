@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import splinesdf as ss
@@ -64,8 +65,9 @@ def test_lines_and_arcs_come_back_exactly_at_any_tolerance(sign: float) -> None:
         ss.offset(shape, distance, tolerance=tolerance * shape.size, coarse=True)
         for tolerance in (1e-2, 1e-8)
     )
-    for contours in (coarse, fine):
-        verdict = judge(shape, contours, distance, 1e-6 * shape.size)
-        assert verdict.failures == []
-        assert verdict.deviation < EXACT * shape.size
-    assert [len(a.arcs) for a in coarse] == [len(a.arcs) for a in fine]
+    verdict = judge(shape, coarse, distance, 1e-6 * shape.size)
+    assert verdict.failures == []
+    assert verdict.deviation < EXACT * shape.size
+    for one_, other in zip(coarse, fine, strict=True):
+        np.testing.assert_allclose(one_.arcs, other.arcs, rtol=0.0, atol=EXACT * shape.size)
+        np.testing.assert_allclose(one_.weights, other.weights, rtol=0.0, atol=1e-12)
