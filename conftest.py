@@ -29,6 +29,18 @@ pytest_collect_file = Sybil(
 ).pytest()
 
 
+def pytest_collection_modifyitems(items: list[Any]) -> None:
+    """Let two processes begin with different kernels: what one compiles the other then loads.
+
+    Each begins with a half of the list. Where nothing is compiled this saves a tenth of the time.
+    """
+    fits = [item for item in items if item.path.name == "test_fit.py"]
+    offsets = [item for item in items if item.path.name == "test_offset.py"]
+    others = [item for item in items if item not in fits and item not in offsets]
+    half = len(items) // 2 - len(fits)
+    items[:] = [*fits, *others[:half], *offsets, *others[half:]]
+
+
 # The kernel files that call others, and which.
 _CALLED = {
     "enclosure": ("bands", "chains", "feet"),

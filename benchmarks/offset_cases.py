@@ -6,6 +6,7 @@ A case is data, so that a worker can be killed over it, and a line in a report r
     zero-handles  random paths with cubics one or both of whose handles have no length
     touching      random polygons that touch: corner in corner, holes in corners, through themselves
     shallow       convex and wavy chains of many vertices that turn by very little
+    work          fans, combs and spirals of hundreds of corners, slots and turns
 """
 
 from __future__ import annotations
@@ -55,6 +56,7 @@ class Case:
 def made(expression: str) -> ss.Shape:
     """The shape that an expression makes."""
     words = (path, glyph, part, icon, moved, scaled, turned_back, restarted, beside, shallow)
+    words += (fan, comb, spiral)
     names = {word.__name__: word for word in words}
     shape = eval(expression, names | {"gamma": gamma, "formula_shape": formula_shape})
     assert isinstance(shape, ss.Shape)
@@ -130,6 +132,34 @@ def shallow(count: int, turn: float, seed: int, wavy: bool = False) -> ss.Shape:
         [(line[-1, 0], line[:, 1].max() + width), (line[0, 0], line[:, 1].max() + width)]
     )
     return ss.Shape.from_points(np.concatenate([line, far]))
+
+
+def fan(corners: int) -> ss.Shape:
+    """Triangles that share a corner, side by side, each a third of its share of the turn wide."""
+    angle = 2.0 * np.pi * np.arange(corners) / corners
+    loops = []
+    for first in angle:
+        ways = first + np.array([0.0, 2.0 * np.pi / (3.0 * corners)])
+        loops.append(np.stack([10.0 * np.cos(ways), 10.0 * np.sin(ways)], axis=-1))
+    return ss.Shape.from_pieces(
+        [[np.stack(pair) for pair in pairwise([np.zeros(2), *loop, np.zeros(2)])] for loop in loops]
+    )
+
+
+def comb(slots: int, width: float) -> ss.Shape:
+    """A plate of unit height with so many slots of a width, a tenth apart, cut from above."""
+    corners = [(0.0, 0.0), (0.1 * (slots + 1), 0.0), (0.1 * (slots + 1), 1.0)]
+    for x in 0.1 * np.arange(slots, 0, -1):
+        corners += [(x + width, 1.0), (x + width, 0.2), (x, 0.2), (x, 1.0)]
+    return ss.Shape.from_points([*corners, (0.0, 1.0)])
+
+
+def spiral(turns: int, sides: int = 48) -> ss.Shape:
+    """A band around its own middle: each turn is 1 farther out, and half of that wide."""
+    angle = 2.0 * np.pi * np.arange(sides, sides * (turns + 1) + 1) / sides
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    inner = angle[:, None] / (2.0 * np.pi) * way
+    return ss.Shape.from_points(np.concatenate([inner, (inner + 0.5 * way)[::-1]]))
 
 
 # --- the parts -----------------------------------------------------------------------------------
@@ -262,11 +292,30 @@ def shallows(rng: np.random.Generator, count: int) -> Iterator[Case]:
         yield drawn_case(rng, "shallow", "wavy" if wavy else "convex", text, made(text).size)
 
 
+def work(rng: np.random.Generator, count: int) -> Iterator[Case]:
+    """The largest ones first."""
+    every = []
+    for text, size, shares in (
+        ("fan(400)", 20.0, (1e-6, 1e-4, 1e-2, 0.1, -1e-6, -1e-4)),
+        ("comb(500, 1e-6)", 50.0, (1e-8, 2e-8, 1e-4, 1e-2, -1e-8, -1e-5, -1e-3)),
+        # The gap between turns is 0.5: a distance of 0.25 fills it, one of -0.25 is all there is.
+        ("spiral(100)", 200.0, (0.00125, 0.00124, 0.0006, -0.00125, -0.00124, -0.0006)),
+        ("spiral(1000)", 2000.0, (0.000125, 0.000124, 0.00006, -0.000124, -0.00006)),
+    ):
+        for share in shares:
+            for tolerance in (1e-4, 1e-7):
+                every.append(
+                    Case("work", text, text, share * size, tolerance * abs(share) * size, size)
+                )
+    yield from every[:count]
+
+
 PARTS: dict[str, Callable[[np.random.Generator, int], Iterator[Case]]] = {
     "transforms": transforms,
     "zero-handles": zero_handles,
     "touching": touching,
     "shallow": shallows,
+    "work": work,
 }
 
 

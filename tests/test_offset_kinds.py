@@ -26,8 +26,7 @@ SHARED = "M51 38L30 16L18 2Z M51 38L4 0L10 48Z"
 def test_random_shapes_of_each_kind(part: str) -> None:
     wrong = []
     for case in cases(part, 11, 15):
-        if case.distance < 100.0 * case.size:  # farther out is a matter of its own, see below
-            wrong += [f"{kind}: {text} {case}" for kind, text in failures(case)]
+        wrong += [f"{kind}: {text} {case}" for kind, text in failures(case)]
     assert not wrong, f"{len(wrong)} wrong, {wrong[0]}"
 
 
@@ -43,6 +42,24 @@ def failures(case: Case) -> list[tuple[str, str]]:
     if any(contour.fitted for contour in contours):
         verdict.fail("fallback", "the level set of a fit")
     return verdict.failures
+
+
+@pytest.mark.parametrize("sizes", [30.0, 1e3])
+@pytest.mark.parametrize(
+    ("shape", "share"),
+    [
+        ("moved(icon('apple'), 1e6)", 1e-4),
+        ("scaled(icon('fingerprint'), 1e-3)", 1e-3),
+        ("scaled(glyph('DejaVuSans:Ω'), 1e-6)", 1e-7),
+        ("gamma('gamma3')", 1e-6),
+        ("gamma('gamma3')", 1e-9),
+        ("shallow(519, 4.4e-8, 13, True)", 1e-5),
+        ("shallow(400, 1e-9, 3, True)", 1e-9),
+    ],
+)
+def test_far_out_parallels_cross_at_small_angles(shape: str, share: float, sizes: float) -> None:
+    size = made(shape).size
+    assert failures(Case("far", "far", shape, sizes * size, share * size, size)) == []
 
 
 @pytest.mark.parametrize("distance", [1.0, -0.5, 3.0])

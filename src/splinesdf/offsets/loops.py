@@ -32,7 +32,8 @@ _WIDER = 30.0
 # Where boundaries touch, stretches on the wrong side may be left that are shorter than the root of
 # rounding, as a share of their own loop's size, not of the drawing's.
 _SHORT = 1e-4
-# Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size.
+# Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size,
+# and of the distance, whose rounding there is. Smaller: far out, ends find no start.
 _SHALLOW = 1e-5
 # Where a parallel is as far from the boundary as asked but for this share of the size, it was cut
 # for rounding only. Larger: what something is nearer to by as much stays in.
