@@ -282,3 +282,26 @@ def inside_is_on_the_left(shape: ss.Shape) -> bool:
         ss.signed_distance(shape, points + sign * beside + boundary.origin) for sign in (1, -1)
     )
     return bool((inside < 0.0).all() and (outside > 0.0).all())
+
+
+@given(
+    st.lists(st.tuples(*[st.integers(-2, 10)] * 3), min_size=1, max_size=4),
+    st.sampled_from(["evenodd", "nonzero"]),
+    st.booleans(),
+    st.booleans(),
+)
+def test_flat_loops_on_a_side_leave_one_side(
+    places: list[tuple[int, int, int]], fill: str, turned: bool, backward: bool
+) -> None:
+    start, way = np.array([3.0, -1.0]), np.array([0.5, 1.25])
+    triangle = np.stack([start, start + 8.0 * way, start + np.array([-7.0, 4.0])])
+    assume(all(len(set(three)) == 3 for three in places))
+    loops = [triangle[::-1] if backward else triangle]
+    loops += [start + np.array(three)[:, None] * way for three in places]
+    if turned:
+        cos, sin = np.cos(0.7), np.sin(0.7)
+        loops = [loop @ np.array([[cos, sin], [-sin, cos]]) for loop in loops]
+    pieces = [[np.stack(p) for p in zip(c, np.roll(c, -1, axis=0), strict=True)] for c in loops]
+    boundary = ss.Shape.from_pieces(pieces, fill=fill).boundary
+    around = np.hypot(*np.diff(triangle[[0, 1, 2, 0]], axis=0).T).sum()
+    assert np.hypot(*(boundary.end - boundary.start).T).sum() == pytest.approx(around, rel=1e-12)

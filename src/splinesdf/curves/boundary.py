@@ -13,7 +13,7 @@ from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import Arcs, Runs, assemble, ends, split
 from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import tangents_at
-from splinesdf.curves.parts import MERGE, Parts, chain_ends, cut_at_crossings
+from splinesdf.curves.parts import MERGE, Parts, chain_ends, cut_at_crossings, groups
 from splinesdf.curves.sides import bounding, look_at_sides
 from splinesdf.errors import InputError
 
@@ -67,7 +67,7 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
     degree = degrees(outline)
     meeting = _meeting_points(outline, parts, keep, 2.0 * MERGE * touching)
     last = np.diff(parts.chain, append=-1) != 0
-    groups, labels, places = [], [], []
+    arcs_of, labels, places = [], [], []
     for d in np.unique(degree[parts.arclet[kept]]):
         rows = np.flatnonzero(kept & (degree[parts.arclet] == d))
         arclet = parts.arclet[rows]
@@ -87,11 +87,11 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         arcs.start[begins] = meeting[side[begins], chain[begins]]
         stops = np.flatnonzero(np.where(turned, parts.place[rows] == 0, last[rows]))
         arcs.control[stops, -1] += meeting[1 - side[stops], chain[stops]] - ends(arcs)[stops]
-        groups.append(arcs)
+        arcs_of.append(arcs)
         labels.append(label[parts.chain[rows]])
         places.append(np.where(turned, -parts.place[rows], parts.place[rows]))
     runs = Runs(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
-    boundary = assemble(groups, runs, outline.origin)
+    boundary = assemble(arcs_of, runs, outline.origin)
     open_end = np.flatnonzero(boundary.following < 0)
     chain = np.flatnonzero(keep)[boundary.run[open_end]]
     boundary.end[open_end] = meeting[left[chain].astype(np.int64), chain]
@@ -121,21 +121,10 @@ def _meeting_points(outline: Arclets, parts: Parts, keep: Bools, near: float) ->
     if not joined.any():
         return points
     some = points[:, joined].reshape(-1, 2)
-    group = _groups(some, near)
+    group = groups(some, near)
     _, representative = np.unique(group, return_index=True)
     points[:, joined] = some[representative][group].reshape(2, -1, 2)
     return points
-
-
-def _groups(points: Floats, near: float) -> Ints:
-    """Number points so that those nearer to one another than ``near`` have one number."""
-    group = np.zeros(len(points), dtype=np.int64)
-    for axis in (0, 1, 0, 1):
-        order = np.lexsort((points[:, axis], group))
-        apart = np.diff(points[order, axis], prepend=-np.inf) > near
-        apart |= np.diff(group[order], prepend=-1) != 0
-        group[order] = np.cumsum(apart) - 1
-    return group
 
 
 def _restrict(arcs: Arcs, interval: Floats) -> Arcs:

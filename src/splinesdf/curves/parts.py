@@ -99,3 +99,14 @@ def chain_ends(outline: Arclets, parts: Parts) -> Floats:
             points_at(outline, parts.arclet[last], parts.interval[last, 1]),
         ]
     )
+
+
+def groups(points: Floats, near: float) -> Ints:
+    """Number points so that those nearer to one another than ``near`` have one number."""
+    group = np.zeros(len(points), dtype=np.int64)
+    for axis in (0, 1, 0, 1):
+        order = np.lexsort((points[:, axis], group))
+        apart = np.diff(points[order, axis], prepend=-np.inf) > near
+        apart |= np.diff(group[order], prepend=-1) != 0
+        group[order] = np.cumsum(apart) - 1
+    return group

@@ -12,8 +12,9 @@ import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver
+from splinesdf.curves.crossings import degrees
 from splinesdf.curves.geometry import points_at, tangents_at
-from splinesdf.curves.parts import MERGE, Parts, chain_ends
+from splinesdf.curves.parts import MERGE, Parts, chain_ends, groups
 
 # Parts of a chain, its longest ones, in which a clear place is looked for, and where in each.
 _PARTS = 3
@@ -149,7 +150,11 @@ def _doubtful_runs(
 
 
 def _repeated(outline: Arclets, parts: Parts, sides: Sides, keep: Bools, touching: float) -> Bools:
-    """Chains that lie on top of an earlier one that is kept, from end to end."""
+    """Chains that lie on top of an earlier one that is kept, from end to end.
+
+    Each knows one other: of three or more on top of one another those known by any are one group,
+    and lines with the same ends.
+    """
     ends = chain_ends(outline, parts)
     chain = np.flatnonzero(sides.partner >= 0)
     # The part in which the partner's parameter lies, and so the chain.
@@ -166,6 +171,19 @@ def _repeated(outline: Arclets, parts: Parts, sides: Sides, keep: Bools, touchin
     turned = meet(ends[0, chain], ends[1, other]) & meet(ends[1, chain], ends[0, other])
     # Whole loops need not begin at the same place.
     both_closed = parts.closed[chain] & parts.closed[other]
-    result = np.zeros(len(keep), dtype=bool)
-    result[chain] = (same | turned | both_closed) & keep[other] & (other < chain)
-    return result
+    linked = (same | turned | both_closed) & keep[other] & keep[chain]
+    line = np.bincount(parts.chain) == 1
+    line[parts.chain] &= degrees(outline)[parts.arclet] == 1
+    line &= keep & (sides.partner >= 0)
+    number = np.sort(groups(ends[:, line].reshape(-1, 2), near).reshape(2, -1), axis=0)
+    _, first, which = np.unique(number, axis=1, return_index=True, return_inverse=True)
+    lines = np.flatnonzero(line)
+    one = np.concatenate([chain[linked], lines])
+    two = np.concatenate([other[linked], lines[first[which.ravel()]] if len(lines) else lines])
+    earliest, before = np.arange(len(keep)), np.empty(0)
+    while not np.array_equal(before, earliest):  # each round some become earlier, or it ends
+        before = earliest.copy()
+        least = np.minimum(earliest[one], earliest[two])
+        np.minimum.at(earliest, one, least)
+        np.minimum.at(earliest, two, least)
+    return np.asarray(earliest < np.arange(len(keep)))

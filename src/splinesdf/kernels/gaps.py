@@ -86,6 +86,11 @@ def narrow(
             length,
         ):
             return a, b, 0, True
+        bent = max(abs(least), abs(most))
+        if gap <= 0.0 and _is_nearer_at_its_ends(
+            arclets, joints, trimming, (element, a, b), j, (bent, length), scratch
+        ):
+            return a, b, 0, True
         steepest = abs(slope) + slack
         lowest = gap - steepest * length + 0.5 * min(under, 0.0) * length * length
         if under > 0.0 and steepest < under * length:
@@ -168,6 +173,42 @@ def _stays_nearer(
 
 
 @kernel
+def _is_nearer_at_its_ends(
+    arclets: Arclets,
+    joints: Joints,
+    trimming: Trimming,
+    stretch: tuple[tuple[int, int], float, float],
+    j: int,
+    bounds: tuple[float, float],
+    scratch: Scratch,
+) -> bool:
+    """Whether the gap to an arclet is below zero at both ends, by more than between them.
+
+    Chord of the stretch and chord of the arclet between the ends' feet are nowhere farther apart
+    than at their ends, and either curve is no farther from its chord than the eighth of its
+    curvature times its length squared.
+    """
+    element, a, b = stretch
+    bend, length = bounds
+    row = trimming.bends[j]
+    other = max(abs(row[0]), abs(row[1]))
+    if not (bend < np.inf and other < np.inf):
+        return False
+    x, y, _, _, _, _ = parallel_point(joints, element, a, trimming.distance)
+    squared, t = closest_on(arclets.arcs, j, x, y, np.inf, scratch)
+    px, py = point_on(arclets.arcs, j, t)
+    far = math.sqrt(squared)
+    x, y, _, _, _, _ = parallel_point(joints, element, b, trimming.distance)
+    squared, t = closest_on(arclets.arcs, j, x, y, np.inf, scratch)
+    qx, qy = point_on(arclets.arcs, j, t)
+    far = max(far, math.sqrt(squared))
+    # An arclet turns by so little that it is at most a fifth longer than its chord.
+    across = 0.125 * other * 1.44 * ((qx - px) ** 2 + (qy - py) ** 2)
+    gap = far - abs(trimming.distance) - _grain(joints, trimming, element, j)
+    return bool(gap + across + 0.5 * bend * length * length <= 0.0)
+
+
+@kernel
 def _largest(a: float, b: float, low: float) -> float:
     """The largest value of a x^2 + b x for x from ``low`` to 1."""
     result = max(a * low * low + b * low, a + b)
@@ -213,8 +254,14 @@ def _second_range(
     """
     far, gx, gy, _ = foot
     tx, ty, least, most = along
-    if not (-np.inf < least and most < np.inf) or far <= 2.0 * length:
+    if not (-np.inf < least and most < np.inf):
         return -np.inf, np.inf, 0.0
+    if far <= 2.0 * length:
+        # It may pass the arclet, in any direction.
+        h_low = min(row[0], -row[1], 0.0)
+        width = 1.0 + h_low * (far + length)
+        under = h_low / width - max(abs(least), abs(most)) if width > 0.0 else -np.inf
+        return under, np.inf, 0.0
     # how much the angle between g and T changes
     change = length / (far - length) + max(abs(least), abs(most)) * length
     across, side = abs(gx * ty - gy * tx), gy * tx - gx * ty

@@ -138,10 +138,11 @@ def _meet(
     """Add the places where arclets i and j meet, other than a joint of theirs."""
     joined, back = arclets.following[i] == j, arclets.following[j] == i
     if joined != back:
-        # Seen from the joint, one runs backwards. Directions that have none in common never
-        # lead to the same place again.
+        # Seen from the joint, one runs backwards. Directions that have none in common, but for
+        # what rounding does to them, never lead to the same place again.
         turn = _remainder(cone[i, 0] - cone[j, 0] + math.pi, 2.0 * math.pi)
-        if abs(turn) > cone[i, 1] + cone[j, 1]:
+        shorter = min(_chord(arclets.arcs, i), _chord(arclets.arcs, j))
+        if (abs(turn) - cone[i, 1] - cone[j, 1]) * shorter > tolerance:
             return found
     arcs = arclets.arcs
     ux, uy = _axis(cone, i, j)
@@ -169,7 +170,8 @@ def _meet(
         return found
     if arcs[i, 0] == 1.0 and arcs[j, 0] == 1.0:
         at_low, at_high = _offset(arcs, i, j, ux, uy, low), _offset(arcs, i, j, ux, uy, high)
-        if at_low * at_high < 0.0:
+        # On top of each other they have no crossing but the ends of their common stretch.
+        if at_low * at_high < 0.0 and max(abs(at_low), abs(at_high)) > tolerance:
             u = low + (high - low) * at_low / (at_low - at_high)
             t, s = _at(arcs, i, ux, uy, u), _at(arcs, j, ux, uy, u)
             found = _add(pair, at, found, i, t, j, s)
@@ -214,6 +216,8 @@ def _meet(
         if smallest > 2.0 * miss or largest < -2.0 * miss:
             continue
         flat = max(largest, -smallest) + miss <= tolerance
+        if flat and low == least and high == most:
+            return found
         fits = miss <= 0.25 * tolerance
         if flat or (fits and changes <= 1) or high - low <= tolerance or size + 2 > _DEPTH:
             if crosses:
@@ -259,6 +263,11 @@ def _axis(cone: Floats, i: int, j: int) -> tuple[float, float]:
 def _remainder(value: float, period: float) -> float:
     """The value less the nearest multiple of the period."""
     return float(value - period * math.floor(value / period + 0.5))
+
+
+@kernel
+def _chord(arcs: Floats, i: int) -> float:
+    return math.hypot(arcs[i, 1] - arcs[i, 3], arcs[i, 2] - arcs[i, 4])
 
 
 @kernel
