@@ -163,3 +163,19 @@ def test_a_chain_of_turns_below_the_tolerance_is_no_line() -> None:
         for tolerance in (1e-4, 1e-6, 1e-9):
             contours = ss.offset(shape, distance, tolerance=tolerance)
             assert deviation(shape, contours) <= 0.1 * tolerance + 1e-12
+
+
+def test_work_has_a_ceiling(monkeypatch: pytest.MonkeyPatch) -> None:
+    from splinesdf.kernels import conic_fit
+
+    # What compiled code goes by stays as it is; this is what the caller compares with.
+    monkeypatch.setattr(conic_fit, "MOST_ARCS", 3)
+    with pytest.raises(ss.InputError, match="3 arcs are enough, got 1e-06: raise it"):
+        ss.offset(gamma("gamma2"), 0.1, tolerance=1e-6)
+
+
+@pytest.mark.parametrize("distance", [4e-7, 5e-7, 1e-6, 1e-4, -5e-7, -5e-4])
+@pytest.mark.parametrize("shape", ["comb(60, 1e-6)", "spiral(8)"])
+def test_long_thin_slots_take_no_longer_than_wide_ones(shape: str, distance: float) -> None:
+    # Seconds, once, or no end: stretches were halved until they were as short as the distance.
+    assert failures(Case("work", "work", shape, distance, 1e-10, made(shape).size)) == []

@@ -180,10 +180,11 @@ def _repeated(outline: Arclets, parts: Parts, sides: Sides, keep: Bools, touchin
     lines = np.flatnonzero(line)
     one = np.concatenate([chain[linked], lines])
     two = np.concatenate([other[linked], lines[first[which.ravel()]] if len(lines) else lines])
-    earliest, before = np.arange(len(keep)), np.empty(0)
-    while not np.array_equal(before, earliest):  # each round some become earlier, or it ends
+    earliest, changed = np.arange(len(keep)), True
+    while changed:  # each round some become earlier, or it ends
         before = earliest.copy()
         least = np.minimum(earliest[one], earliest[two])
         np.minimum.at(earliest, one, least)
         np.minimum.at(earliest, two, least)
+        changed = not np.array_equal(before, earliest)
     return np.asarray(earliest < np.arange(len(keep)))

@@ -38,6 +38,8 @@ _SHORTEST = 1e-6
 _LITTLE = 0.03
 # Points of an element that are looked at for that.
 _LOOKED = 6
+# Arcs of all runs: a tolerance that takes more is below what anybody has a use for. More: memory.
+MOST_ARCS = 2_000_000
 
 
 @kernel
@@ -51,6 +53,8 @@ def fit_runs(
     owner: Ints,
 ) -> int:
     """Fill the arcs of all runs, in order; how many there are, even if there is no room for all.
+
+    It ends early once there are more than `MOST_ARCS`.
 
     Parameters
     ----------
@@ -205,7 +209,7 @@ def _free(
     node = _node(joints, runs, r, 0.0, distance)
     for b in range(count - 1):
         place, limit = breaks[b], breaks[b + 1]
-        while place < limit:
+        while place < limit and total <= MOST_ARCS:
             at = _farthest(joints, runs, r, (place, limit, step), node, asked, points)
             while True:
                 other = _node(joints, runs, r, at, distance)

@@ -58,7 +58,7 @@ def narrow(
     left = 0
     # A stretch that turns by at most half a turn is at most this much longer than its chords.
     length = 1.12 * reach
-    least, most = _bend_range(trimming, element, bend, b - a)
+    least, most = bend_range(trimming, element, bend, b - a)
     for k in range(number):
         j = near[base + k]
         squared, t = closest_on(arcs, j, x, y, (radius + reach) ** 2, scratch)
@@ -218,7 +218,7 @@ def _largest(a: float, b: float, low: float) -> float:
 
 
 @kernel
-def _bend_range(
+def bend_range(
     trimming: Trimming, element: tuple[int, int], bend: float, width: float
 ) -> tuple[float, float]:
     """The range of the curvature of a stretch, of which that in the middle is ``bend``.

@@ -13,6 +13,7 @@ from splinesdf.contour import Contour
 from splinesdf.curves.geometry import angles
 from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
+from splinesdf.errors import InputError
 from splinesdf.offsets.loops import Loops, loops_of
 from splinesdf.offsets.runs import runs_of
 from splinesdf.offsets.trimmed import Stretches, joints_at, smooth_turn, trimmed
@@ -139,7 +140,7 @@ def _fitted(
     shape: Shape, runs: Runs, distance: float, tolerance: Floats
 ) -> tuple[Floats, Floats, Ints]:
     """Arcs of all runs, relative to the boundary's origin, their weights, and their runs."""
-    from splinesdf.kernels.conic_fit import fit_runs  # Numba loads only when it is used
+    from splinesdf.kernels.conic_fit import MOST_ARCS, fit_runs  # Numba loads only when it is used
 
     room = 4 * len(runs.kind) + 64
     while True:
@@ -148,6 +149,11 @@ def _fitted(
         count = fit_runs(
             joints_at(shape, distance), runs, distance, tolerance, arcs, weights, owner
         )
+        if count > MOST_ARCS:
+            raise InputError(
+                f"expected a tolerance for which {MOST_ARCS:,} arcs are enough, got "
+                f"{tolerance.min():.2g}: raise it"
+            )
         if count <= room:
             return arcs[:count], weights[:count], owner[:count]
         room = count

@@ -38,6 +38,9 @@ _SHALLOW = 1e-5
 # Where a parallel is as far from the boundary as asked but for this share of the size, it was cut
 # for rounding only. Larger: what something is nearer to by as much stays in.
 _ROUNDING = 1e-12
+# Loops that reach no farther than this many times the largest gap in them are none. 1: what is left
+# of a stretch to and fro; larger: loops that are nearly as small as a gap are lost.
+_OPEN = 1.5
 # Stretches that overlap are nearly on one line if they turn by less than this (radians) there.
 _OVERLAP = 1e-3
 # They may cross so far (in the parameter) beyond the end of an arclet, on its continuation.
@@ -90,6 +93,14 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     if which is None:
         return None
     follows[ends] = starts[which]
+    real = _larger_than_their_gaps(points, follows)
+    if not real.all():
+        number = np.cumsum(real) - 1
+        stretches = Stretches(stretches.elements[real], stretches.spans[real])
+        spans, points, own = spans[real], points[:, real], own[real]
+        ends, follows = number[ends[real[ends]]], number[follows[real]]
+        if not len(follows):
+            return _as_loops(stretches, follows, points, np.empty((0, 5)))
     loose = Loose(stretches.elements, spans, points, ends, follows[ends], own)
     _draw_back(shape, loose, distance)
     _to_crossings(shape, loose, distance)
@@ -185,6 +196,23 @@ def _matched(ends: Floats, starts: Floats, farthest: float) -> Ints | None:
         if radius >= farthest:
             return None if (result < 0).any() else result
         radius = min(radius * _WIDER, farthest)
+
+
+def _larger_than_their_gaps(points: Floats, follows: Ints) -> Bools:
+    """Which stretches are in loops that reach farther than what is open in them.
+
+    A short stretch between two crossings at small angles may be nearer to itself than, for
+    rounding, to its neighbors. Then those are matched to each other, and it is a loop alone.
+    """
+    order, first = cycles(follows)
+    begins = first[:-1]
+    gap = np.hypot(*(points[0, follows, :2] - points[1, :, :2]).T)[order]
+    low, high = points[:, order, :2].min(axis=0), points[:, order, :2].max(axis=0)
+    reach = np.maximum.reduceat(high, begins) - np.minimum.reduceat(low, begins)
+    real = reach.max(axis=1) > _OPEN * np.maximum.reduceat(gap, begins)
+    result = np.empty(len(follows), dtype=np.bool_)
+    result[order] = np.repeat(real, np.diff(first))
+    return result
 
 
 def _to_crossings(shape: Shape, loose: Loose, distance: float) -> None:

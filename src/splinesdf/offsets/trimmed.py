@@ -10,6 +10,7 @@ from splinesdf._arrays import Floats, Ints
 from splinesdf._tables import Joints, Trimming
 from splinesdf.curves.joints import CUSP
 from splinesdf.curves.shape import Shape
+from splinesdf.errors import InputError
 
 # Rounding in a distance, as a multiple of the largest number around: what is not farther than the
 # distance by more counts as nearer, so that walls just twice the distance apart leave nothing
@@ -47,9 +48,14 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
         Stretches far shorter than it may be missing.
     smooth : float
         Joints that turn by less (radians) are none, see `smooth_turn`.
+
+    Raises
+    ------
+    InputError
+        If that takes too long.
     """
     from splinesdf.kernels.own_chains import own_chains  # Numba loads only when it is used
-    from splinesdf.kernels.trim import trim
+    from splinesdf.kernels.trim import MOST_LOOKS, trim
 
     boundary, joints = shape.boundary, joints_at(shape, distance)
     request = trimming(shape, distance, tolerance, smooth)
@@ -60,6 +66,11 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
     while True:
         elements, spans = np.empty((room, 2), dtype=np.int64), np.empty((room, 2))
         found = trim(boundary, joints, request, bent, reach, elements, spans)
+        if found < 0:
+            raise InputError(
+                f"expected a distance whose parallels are told apart by {MOST_LOOKS:,} looks, got "
+                f"{distance:g}, which takes more: ask for another, or offset loops by themselves"
+            )
         if found <= room:
             return Stretches(elements[:found], spans[:found])
         room = found
