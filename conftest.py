@@ -46,7 +46,8 @@ _CALLED = {
     "enclosure": ("bands", "chains", "feet"),
     "chains": ("feet",),
     "gaps": ("nearest", "parallels"),
-    "trim": ("gaps", "nearest", "parallels"),
+    "gather": ("nearest",),
+    "trim": ("gaps", "gather", "nearest", "parallels"),
     "conic_arc": ("parallels",),
     "conic_fit": ("conic_arc", "parallels"),
 }
