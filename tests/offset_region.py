@@ -99,7 +99,10 @@ def judge_region(
     judge = Judge(here, distance, allowed)
     judge.deviation(verdict, contours, origin)
     judge.sides(verdict, lines, seed)
-    judge.enclosed(verdict, [line.points for line in lines])
+    try:
+        judge.enclosed(verdict, [line.points for line in lines])
+    except shapely.GEOSException as error:
+        verdict.undecided.append(f"area and loops, as GEOS fails: {error}")
     return verdict
 
 
