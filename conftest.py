@@ -46,7 +46,7 @@ _CALLED = {
     "enclosure": ("bands", "chains", "feet"),
     "chains": ("feet",),
     "gaps": ("nearest", "parallels"),
-    "gather": ("nearest",),
+    "gather": ("gaps", "nearest", "parallels"),
     "trim": ("gaps", "gather", "nearest", "parallels"),
     "conic_arc": ("parallels",),
     "conic_fit": ("conic_arc", "parallels"),

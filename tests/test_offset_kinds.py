@@ -179,3 +179,11 @@ def test_work_has_a_ceiling(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_long_thin_slots_take_no_longer_than_wide_ones(shape: str, distance: float) -> None:
     # Seconds, once, or no end: stretches were halved until they were as short as the distance.
     assert failures(Case("work", "work", shape, distance, 1e-10, made(shape).size)) == []
+
+
+def test_a_short_arc_between_turning_parallels_is_found() -> None:
+    # A reflex corner between curves that bend without limit there: of its arc a fifth is left.
+    text = "M-25 -32C18 49 27 31 27 31C27 31 47 -3 6 -29L26 -12C26 -12 -31 -23 -31 -23"
+    shape = f"path('{text}L-44 30C-49 51 -25 -32 -25 -32Z')"
+    for distance in (-2.741, -1.0, -0.1):
+        assert failures(Case("work", "work", shape, distance, 1e-4, 76.0)) == []

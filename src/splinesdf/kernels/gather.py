@@ -7,10 +7,18 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel
-from splinesdf._tables import Arclets, Scratch
-from splinesdf.kernels.nearest import capsule_distance, search
+from splinesdf._tables import Arclets, Joints, Scratch, Trimming
+from splinesdf.kernels.gaps import bend_range
+from splinesdf.kernels.nearest import capsule_distance, point_on, search
+from splinesdf.kernels.parallels import parallel_point
+
+# Parts of a stretch that are looked at to find one to which nothing is nearer; each is a quarter of
+# it at most. More: time, next to cusps, where nothing is proved; fewer: short ones are missed.
+_LOOKED = 32
 
 
 @kernel
@@ -89,3 +97,78 @@ def is_near(arclets: Arclets, x: float, y: float, limit: float, scratch: Scratch
     scratch.nodes[0] = 0
     _, hit, _ = search(arclets.tree, arclets.arcs, x, y, limit, 1, -1, -1.0, scratch)
     return bool(hit >= 0)
+
+
+@kernel
+def surfaces(
+    arclets: Arclets,
+    joints: Joints,
+    trimming: Trimming,
+    element: tuple[int, int],
+    span: tuple[float, float],
+    limit: float,
+    scratch: Scratch,
+) -> float:
+    """A parameter between two, to which something is nearer, where nothing is; else NaN.
+
+    The distance to the nearest point, as it moves along the stretch, bends upward by no more than
+    1 / distance + curvature. So it stays below the limit for a while from either end, which grows
+    like the root of how far below it is there. If both meet, nothing is between.
+    """
+    spans = np.empty((_LOOKED + 2, 2))
+    spans[0, 0], spans[0, 1] = span
+    size = 1
+    for _ in range(_LOOKED):
+        if size == 0:
+            break
+        size -= 1
+        a, b = spans[size, 0], spans[size, 1]
+        ax, ay, far_a, slope_a = _nearest_along(arclets, joints, trimming, element, a, scratch)
+        bx, by, far_b, slope_b = _nearest_along(arclets, joints, trimming, element, b, scratch)
+        length = 1.12 * math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+        if length <= trimming.shortest:
+            continue
+        m = 0.5 * (a + b)
+        _, _, _, _, _, bend = parallel_point(joints, element, m, trimming.distance)
+        least, most = bend_range(trimming, element, bend, b - a)
+        curved = max(abs(least), abs(most))
+        if curved < np.inf and length < min(far_a, far_b):
+            up = curved + 1.0 / (min(far_a, far_b) - length)
+            below = _stays_below(far_a - limit, slope_a, up)
+            below += _stays_below(far_b - limit, -slope_b, up)
+            if below >= length:
+                continue
+        _, _, far, _ = _nearest_along(arclets, joints, trimming, element, m, scratch)
+        if far >= limit:
+            return float(m)
+        spans[size, 0], spans[size, 1] = m, b
+        spans[size + 1, 0], spans[size + 1, 1] = a, m
+        size += 2
+    return math.nan
+
+
+@kernel
+def _nearest_along(
+    arclets: Arclets,
+    joints: Joints,
+    trimming: Trimming,
+    element: tuple[int, int],
+    t: float,
+    scratch: Scratch,
+) -> tuple[float, float, float, float]:
+    """A point of a parallel, how far what is nearest is, and how fast that changes along it."""
+    x, y, tx, ty, _, _ = parallel_point(joints, element, t, trimming.distance)
+    scratch.nodes[0] = 0
+    # Nothing is farther than where the point belongs, but for rounding.
+    limit = 2.0 * abs(trimming.distance)
+    far, hit, at = search(arclets.tree, arclets.arcs, x, y, limit, 1, -1, -1.0, scratch)
+    if hit < 0 or far == 0.0:
+        return x, y, far, 0.0
+    px, py = point_on(arclets.arcs, hit, at)
+    return x, y, far, ((x - px) * tx + (y - py) * ty) / far
+
+
+@kernel
+def _stays_below(value: float, slope: float, bend: float) -> float:
+    """How far what is below zero, has a slope, and bends up by no more than that, stays there."""
+    return float((math.sqrt(max(slope * slope - 2.0 * bend * value, 0.0)) - slope) / bend)

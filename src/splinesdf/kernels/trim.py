@@ -27,7 +27,7 @@ from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._jit import kernel
 from splinesdf._tables import Arclets, Joints, Scratch, Trimming
 from splinesdf.kernels.gaps import bend_range, gap_at, narrow
-from splinesdf.kernels.gather import gather, is_near
+from splinesdf.kernels.gather import gather, is_near, surfaces
 from splinesdf.kernels.nearest import room_to_search
 from splinesdf.kernels.parallels import parallel_point
 
@@ -48,8 +48,9 @@ _COARSE, _FEW = 32.0, 24
 _COMPARED = 4
 # Steps to where the offset is left. Bisection alone would need 53; the secants need about 8.
 _STEPS = 80
-# By how much a disk may be entered, in grains, before a stretch that is compared is cut. Larger:
-# cuts are farther from the corners that they are moved to, and small turning points are missed.
+# By how much a disk may be entered, in grains, before a stretch that is compared is cut: normals
+# next to where a curve stands still are noisy. Larger: cuts are farther from the corners that they
+# are moved to, and small turning points are missed.
 _ENTERED = 64.0
 # Stretches of one element that are looked at. Only where two boundaries are |d| apart to rounding
 # over a length are there so many; from then on, stretches that reach no farther than a share of
@@ -284,35 +285,53 @@ def _compare(
 ) -> int:
     """Append the parts of a stretch at whose points nothing is nearer than |d|."""
     low, high = span
-    # Normals next to where a curve stands still are noisy: a disk may be entered by as much.
-    limit = abs(trimming.distance) - _ENTERED * trimming.grain
-    last = low
     point = parallel_point(joints, element, low, trimming.distance)
+    limit = abs(trimming.distance) - _ENTERED * trimming.grain
     before = is_near(arclets, point[0], point[1], limit, scratch)
-    began = low
+    began = last = low
     for k in range(1, _COMPARED + 1):
         t = high if k == _COMPARED else low + (high - low) * k / _COMPARED
         point = parallel_point(joints, element, t, trimming.distance)
         now = is_near(arclets, point[0], point[1], limit, scratch)
-        if now != before:
-            a, b = last, t
-            for _ in range(_STEPS):
-                m = 0.5 * (a + b)
-                if m in (a, b):
-                    break
-                point = parallel_point(joints, element, m, trimming.distance)
-                if is_near(arclets, point[0], point[1], limit, scratch) == before:
-                    a = m
-                else:
-                    b = m
-            if now:
-                total = _append(element, (began, a), found, since, total)
-            else:
-                began = b
+        if now and before:
+            clear = surfaces(arclets, joints, trimming, element, (last, t), limit, scratch)
+            if last < clear < t:
+                began = _changes(arclets, joints, trimming, element, (clear, last), limit, scratch)
+                ends = _changes(arclets, joints, trimming, element, (clear, t), limit, scratch)
+                total = _append(element, (began, ends), found, since, total)
+        elif now:
+            ends = _changes(arclets, joints, trimming, element, (last, t), limit, scratch)
+            total = _append(element, (began, ends), found, since, total)
+        elif before:
+            began = _changes(arclets, joints, trimming, element, (t, last), limit, scratch)
         last, before = t, now
     if not before:
         total = _append(element, (began, high), found, since, total)
     return total
+
+
+@kernel
+def _changes(
+    arclets: Arclets,
+    joints: Joints,
+    trimming: Trimming,
+    element: tuple[int, int],
+    span: tuple[float, float],
+    limit: float,
+    scratch: Scratch,
+) -> float:
+    """The last parameter, from the first one on, at which nothing is nearer than the limit."""
+    clear, near = span
+    for _ in range(_STEPS):
+        m = 0.5 * (clear + near)
+        if m in (clear, near):
+            break
+        point = parallel_point(joints, element, m, trimming.distance)
+        if is_near(arclets, point[0], point[1], limit, scratch):
+            near = m
+        else:
+            clear = m
+    return clear
 
 
 @kernel
