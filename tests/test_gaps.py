@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,46 @@ SHAPES = {
 TRIALS, WALLS = 1000, 20
 
 
+class Stretch(NamedTuple):
+    """A part of a parallel, as it really is."""
+
+    i: int  # the arclet
+    m: float  # the parameter in its middle
+    half: float  # how far it goes from there, in the parameter
+    points: np.ndarray  # (65, 2)
+    away: np.ndarray  # (65,) how far along from the middle
+    middle: tuple[float, float, float, float]  # point and tangent
+    bends: tuple[float, float]  # the range of its curvature, as far as is known
+
+    @property
+    def length(self) -> float:
+        """Of a half, as long as it really is, so that claims are as bold as can be."""
+        return 1.001 * float(self.away.max())
+
+
+def some_stretch(
+    shape: ss.Shape, distance: float, random: np.random.Generator, shares: tuple[float, float]
+) -> Stretch:
+    i = int(random.integers(len(shape.boundary.start)))
+    half = 10.0 ** random.uniform(*shares)
+    m = random.uniform(half, 1.0 - half)
+    at = np.linspace(m - half, m + half, 65)
+    points = parallels(shape, np.array([[i, 0]] * 65), at, distance)[:, :2]
+    x, y, tx, ty, _, bend = parallel_point(shape.joints, (i, 0), m, distance)
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    away = np.abs(np.cumsum(np.append(0.0, steps)) - steps[:32].sum())
+    bends = bend_range(trimming(shape, distance, 1.0), (i, 0), bend, 2.0 * half)
+    return Stretch(i, m, half, points, away, (x, y, tx, ty), bends)
+
+
+def foot_on(shape: ss.Shape, wall: int, x: float, y: float) -> tuple | None:
+    """Distance, direction and parameter of the nearest point of a wall, if it is elsewhere."""
+    arcs = shape.boundary.arcs
+    squared, t = closest_on(arcs, wall, x, y, np.inf, room_to_search(arcs))
+    far, (px, py) = np.sqrt(squared), point_on(arcs, wall, t)
+    return (far, (x - px) / far, (y - py) / far, t) if far > 0.0 else None
+
+
 def distances(shape: ss.Shape, j: int, points: np.ndarray) -> np.ndarray:
     arcs = shape.boundary.arcs
     scratch = room_to_search(arcs)
@@ -56,30 +98,18 @@ def allowed(shape: ss.Shape, wall: int, foot: tuple, along: tuple, length: float
 @pytest.mark.parametrize("name", SHAPES)
 def test_a_wall_is_nowhere_farther_than_its_curvature_allows(name: str) -> None:
     shape = SHAPES[name]()
-    arcs, count = shape.boundary.arcs, len(shape.boundary.start)
-    scratch = room_to_search(arcs)
     random = np.random.default_rng(5)
     growth = []
     for _ in range(TRIALS):
         distance = shape.size * random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(-2.5, -0.5)
-        i = int(random.integers(count))
-        half = 10.0 ** random.uniform(-3.0, -0.5)
-        m = random.uniform(half, 1.0 - half)
-        at = np.linspace(m - half, m + half, 65)
-        points = parallels(shape, np.array([[i, 0]] * 65), at, distance)[:, :2]
-        x, y, tx, ty, _, bend = parallel_point(shape.joints, (i, 0), m, distance)
-        # Half of the stretch, as long as it really is, so that claims are as bold as can be.
-        steps = np.hypot(*np.diff(points, axis=0).T)
-        length = 1.001 * max(float(steps[:32].sum()), float(steps[32:].sum()))
-        range_ = bend_range(trimming(shape, distance, 1.0), (i, 0), bend, 2.0 * half)
-        for wall in random.integers(count, size=WALLS).tolist():
-            squared, t = closest_on(arcs, wall, x, y, np.inf, scratch)
-            far, (px, py) = np.sqrt(squared), point_on(arcs, wall, t)
-            if far > 0.0:
-                foot = (far, (x - px) / far, (y - py) / far, t)
-                most = allowed(shape, wall, foot, (tx, ty, *range_), length)
-                if np.isfinite(most):
-                    growth.append((float((distances(shape, wall, points) - far).max()), most))
+        one = some_stretch(shape, distance, random, (-3.0, -0.5))
+        x, y, tx, ty = one.middle
+        for wall in random.integers(len(shape.boundary.start), size=WALLS).tolist():
+            if (foot := foot_on(shape, wall, x, y)) is None:
+                continue
+            most = allowed(shape, wall, foot, (tx, ty, *one.bends), one.length)
+            if np.isfinite(most):
+                growth.append((float((distances(shape, wall, one.points) - foot[0]).max()), most))
     grown, most = np.array(growth).T
     assert len(growth) > 20
     assert np.all(grown <= most * (1.0 + 1e-9) + 1e-14 * shape.size)
@@ -97,35 +127,27 @@ def test_long_stretches_are_no_nearer_and_no_farther_than_is_said(name: str) -> 
     nearer, bounds, sizes = 0, [], []
     for _ in range(TRIALS):
         distance = shape.size * random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(-4.0, -0.5)
-        i = int(random.integers(count))
-        half = 10.0 ** random.uniform(-2.0, -0.31)
-        m = random.uniform(half, 1.0 - half)
-        at = np.linspace(m - half, m + half, 65)
-        points = parallels(shape, np.array([[i, 0]] * 65), at, distance)[:, :2]
-        x, y, tx, ty, _, bend = parallel_point(shape.joints, (i, 0), m, distance)
-        steps = np.hypot(*np.diff(points, axis=0).T)
-        far_along = np.abs(np.cumsum(np.append(0.0, steps)) - steps[:32].sum())
-        length = 1.001 * float(far_along.max())
+        one = some_stretch(shape, distance, random, (-2.0, -0.31))
+        if not np.isfinite(one.bends).all():
+            continue
+        x, y, tx, ty = one.middle
         asked = trimming(shape, distance, 1.0)
-        range_ = bend_range(asked, (i, 0), bend, 2.0 * half)
-        walls = np.append(random.integers(count, size=8), np.arange(i - 4, i + 5) % count)
+        rounding = 1e-13 * (shape.size + abs(distance))
+        walls = np.append(random.integers(count, size=8), np.arange(one.i - 4, one.i + 5) % count)
         for wall in walls.tolist():
-            squared, t = closest_on(boundary.arcs, wall, x, y, np.inf, scratch)
-            far, (px, py) = np.sqrt(squared), point_on(boundary.arcs, wall, t)
-            if far == 0.0 or not np.isfinite(range_).all():
+            if (foot := foot_on(shape, wall, x, y)) is None:
                 continue
-            foot = (far, (x - px) / far, (y - py) / far, t)
-            row = shape.bends.rows[wall]
-            under, _, slack = _second_range(row, foot, (tx, ty, *range_), length)
-            found = distances(shape, wall, points)
-            rounding = 1e-13 * (shape.size + abs(distance))
+            found = distances(shape, wall, one.points)
+            row, along = shape.bends.rows[wall], (tx, ty, *one.bends)
+            under, _, slack = _second_range(row, foot, along, one.length)
             slope = abs(foot[1] * tx + foot[2] * ty) + slack
             if np.isfinite(under):
-                least = far - slope * far_along + 0.5 * under * far_along**2
+                least = foot[0] - slope * one.away + 0.5 * under * one.away**2
                 assert np.all(found >= least - rounding)
-                bounds.append(far <= 2.0 * length)
-                sizes.append(float((found - least).max()) / length)
-            ends, most = ((i, 0), m - half, m + half), (max(map(abs, range_)), length)
+                bounds.append(foot[0] <= 2.0 * one.length)
+                sizes.append(float((found - least).max()) / one.length)
+            ends = ((one.i, 0), one.m - one.half, one.m + one.half)
+            most = (max(map(abs, one.bends)), one.length)
             if _is_nearer_at_its_ends(boundary, shape.joints, asked, ends, wall, most, scratch):
                 nearer += 1
                 assert found.max() <= abs(distance) + asked.grain + rounding
