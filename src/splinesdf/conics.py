@@ -220,8 +220,7 @@ def _overshoot(a: Floats, forward: Floats, weights: Floats) -> tuple[Floats, Flo
     """
     e = np.maximum(np.abs(forward) - a, 0.0)
     # With numbers up to 1 instead of w, so that no square overflows: u = min(w, 1), v = u / w.
-    u = np.minimum(weights, 1.0)
-    v = u / weights
+    u, v = np.minimum(weights, 1.0), 1.0 / np.maximum(weights, 1.0)
     root = np.hypot(a * v * v, np.sqrt(e) * np.sqrt(e + 2.0 * a) * u * v) + a * v * v
     below = u * u * e + root
     over = np.divide(u * u * e * e, below, out=np.zeros_like(e), where=below > 0.0)

@@ -15,7 +15,7 @@ from splinesdf._tables import FREE, ROUND, STRAIGHT, Runs
 from splinesdf.curves.geometry import angles, off_chord
 from splinesdf.curves.shape import Shape
 from splinesdf.offsets.loops import Loops
-from splinesdf.offsets.trimmed import parallels
+from splinesdf.offsets.trimmed import SMOOTH, parallels
 
 # A run is one line or one circle if it is no farther off anywhere, as a share of the tolerance or
 # of the largest coordinate, for rounding. Larger: what is exact is off by as much; smaller: chains
@@ -45,6 +45,7 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     same &= (kind != ROUND) | (
         (_off_circle(points, points[after], center[after]) <= allowed)
         & (_off_circle(points[after], points, center) <= allowed)
+        & (_tangents_apart(points, points[after], center, center[after]) <= SMOOTH)
     )
     order = np.concatenate([_turned(np.arange(a, b), same[a:b]) for a, b in pairwise(loops.first)])
     # Where the loops end, runs do.
@@ -107,6 +108,15 @@ def _off_circle(some: Floats, points: Floats, center: Floats) -> Floats:
     return np.asarray(
         np.abs(np.hypot(*np.moveaxis(points - center[:, None], 2, 0)) - own[:, None]).max(axis=1)
     )
+
+
+def _tangents_apart(one: Floats, other: Floats, center: Floats, others: Floats) -> Floats:
+    """By how much the tangents of two circles differ (radians) at the far ends of two arcs.
+
+    An arc so short that any circle will do may turn by far more than the circle beside it.
+    """
+    start, end = (angles(at - center, at - others) for at in (one[:, 0], other[:, -1]))
+    return np.maximum(np.abs(start), np.abs(end))
 
 
 def _bent(points: Floats, center: Floats, kind: Ints, ends: Bools, allowed: float) -> Bools:
