@@ -144,8 +144,7 @@ def sure_polyline_distance(
     """Signed distance good to ``deviation``, and where it is sure to be; None if nothing is filled.
 
     Where contours cross at a small angle, or touch, the filled region's boundary moves by much
-    more than the polylines deviate. Those are the places where two finenesses do not agree. Nor is
-    the side sure of a point on a line that was drawn to and fro inside: rounding decides there.
+    more than the polylines deviate. Those are the places where two finenesses do not agree.
     """
     snap = SNAP * float(np.abs(shape.control).max())
     coarse, fine = (
@@ -154,12 +153,17 @@ def sure_polyline_distance(
     )
     if coarse is None or fine is None:
         return None
+    return fine, np.abs(np.abs(coarse) - np.abs(fine)) < 2.0 * deviation
+
+
+def on_lines(shape: ss.Shape, points: np.ndarray, deviation: float) -> np.ndarray:
+    """Which points are on what was drawn: inside, on a line to and fro, rounding tells their side."""
     drawn = shapely.multilinestrings(
-        [shapely.linestrings(line) for line in polylines(shape, deviation / 16.0)]
+        [shapely.linestrings(line) for line in polylines(shape, deviation)]
     )
     shapely.prepare(drawn)
-    on_line = shapely.dwithin(drawn, shapely.points(points), snap) & (np.abs(fine) > snap)
-    return fine, (np.abs(np.abs(coarse) - np.abs(fine)) < 2.0 * deviation) & ~on_line
+    near = SNAP * float(np.abs(shape.control).max())
+    return np.asarray(shapely.dwithin(drawn, shapely.points(points), near))
 
 
 Exact = tuple[Fraction, Fraction]

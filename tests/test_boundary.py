@@ -305,3 +305,10 @@ def test_flat_loops_on_a_side_leave_one_side(
     boundary = ss.Shape.from_pieces(pieces, fill=fill).boundary
     around = np.hypot(*np.diff(triangle[[0, 1, 2, 0]], axis=0).T).sum()
     assert np.hypot(*(boundary.end - boundary.start).T).sum() == pytest.approx(around, rel=1e-12)
+
+
+def test_a_line_to_and_fro_across_a_curve_cuts_no_sliver_off_it() -> None:
+    # It crosses at an angle of 4e-5, twice, and for rounding in two places 2e-11 apart.
+    boundary = icons()["dribbble"].boundary
+    length = np.hypot(*(boundary.end - boundary.start).T)
+    assert length.min() > 1e-6

@@ -13,7 +13,14 @@ from splinesdf._tables import Arclets
 from splinesdf.curves.arclets import Arcs, Runs, assemble, ends, split
 from splinesdf.curves.crossings import control_points, degrees
 from splinesdf.curves.geometry import tangents_at
-from splinesdf.curves.parts import MERGE, Parts, chain_ends, cut_at_crossings, groups
+from splinesdf.curves.parts import (
+    MERGE,
+    Parts,
+    chain_ends,
+    cut_at_crossings,
+    groups,
+    without_cuts,
+)
 from splinesdf.curves.sides import bounding, look_at_sides
 from splinesdf.errors import InputError
 
@@ -57,7 +64,28 @@ def filled_boundary(outline: Arclets, evenodd: bool, largest: float) -> Arclets:
         )
     if keep.all() and left.all() and parts.closed.all():
         return outline
-    return _rebuild(outline, parts, keep, left, touching)
+    healed = _cut_in_vain(outline, parts, keep, left, 2.0 * MERGE * touching)
+    parts, chains = without_cuts(parts, healed)
+    return _rebuild(outline, parts, keep[chains], left[chains], touching)
+
+
+def _cut_in_vain(outline: Arclets, parts: Parts, keep: Bools, left: Bools, near: float) -> Bools:
+    """Which chains go on, on the same arclet, from where only the one before it is kept as well.
+
+    What crosses there bounds nothing. At a small angle it may have cut off a part so short that its
+    curvature is all rounding.
+    """
+    first = np.flatnonzero(parts.place == 0)
+    before = np.maximum(first - 1, 0)
+    chain = parts.chain[before]
+    inner = (parts.arclet[before] == parts.arclet[first]) & (parts.interval[first, 0] > 0.0)
+    inner &= (parts.following[chain] == parts.chain[first]) & (first > 0) & ~parts.closed
+    inner &= keep & keep[chain] & (left == left[chain])
+    some = keep & ~parts.closed
+    group = groups(chain_ends(outline, parts)[:, some].reshape(-1, 2), near).reshape(2, -1)
+    alone = np.zeros(len(keep), dtype=np.bool_)
+    alone[some] = np.bincount(group.ravel())[group[0]] == 2
+    return np.asarray(inner & alone)
 
 
 def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching: float) -> Arclets:

@@ -89,6 +89,34 @@ def _in_chains(outline: Arclets, arclet: Ints, interval: Floats, begin: Bools) -
     )
 
 
+def without_cuts(parts: Parts, healed: Bools) -> tuple[Parts, Ints]:
+    """The parts with some chains, by number, joined to the one before: it was cut in vain.
+
+    Both are on one arclet, and the chain that goes on is no loop's first. The second result are the
+    numbers of the chains that are left.
+    """
+    gone = healed[parts.chain] & (parts.place == 0)
+    first = np.flatnonzero(~gone)
+    last = np.append(first[1:], len(gone)) - 1
+    left = np.flatnonzero(~healed)
+    number = np.cumsum(~healed) - 1
+    chain = number[parts.chain[first]]
+    opens = np.flatnonzero(np.diff(chain, prepend=-1))
+    # What came after the last of those that are one chain now.
+    tail = np.append(left[1:], len(healed)) - 1
+    return (
+        Parts(
+            arclet=parts.arclet[first],
+            interval=np.column_stack([parts.interval[first, 0], parts.interval[last, 1]]),
+            chain=chain,
+            place=np.arange(len(first)) - opens[chain],
+            closed=parts.closed[left],
+            following=number[parts.following[tail]],
+        ),
+        left,
+    )
+
+
 def chain_ends(outline: Arclets, parts: Parts) -> Floats:
     """Where each chain starts and ends, as it was drawn: (2, n_chains, 2)."""
     first = np.flatnonzero(parts.place == 0)
