@@ -157,7 +157,7 @@ def sure_polyline_distance(
 
 
 def on_lines(shape: ss.Shape, points: np.ndarray, deviation: float) -> np.ndarray:
-    """Which points are on what was drawn: inside, on a line to and fro, rounding tells their side."""
+    """Which points are on what was drawn: of a line to and fro, rounding tells their side."""
     drawn = shapely.multilinestrings(
         [shapely.linestrings(line) for line in polylines(shape, deviation)]
     )
