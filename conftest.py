@@ -32,7 +32,7 @@ pytest_collect_file = Sybil(
 def pytest_collection_modifyitems(items: list[Any]) -> None:
     """Let two processes begin with different kernels: what one compiles the other then loads.
 
-    Each begins with a half of the list. Where nothing is compiled this saves a tenth of the time.
+    Each begins with a half of the list.
     """
     fits = [item for item in items if item.path.name == "test_fit.py"]
     offsets = [item for item in items if item.path.name == "test_offset.py"]

@@ -293,7 +293,7 @@ def shallows(rng: np.random.Generator, count: int) -> Iterator[Case]:
 
 
 def work(rng: np.random.Generator, count: int) -> Iterator[Case]:
-    """The largest ones first."""
+    """Always the same ones; the largest spiral comes last."""
     every = []
     for text, size, shares in (
         ("fan(400)", 20.0, (1e-6, 1e-4, 1e-2, 0.1, -1e-6, -1e-4)),

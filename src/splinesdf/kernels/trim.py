@@ -56,8 +56,8 @@ _ENTERED = 64.0
 # over a length are there so many; from then on, stretches that reach no farther than a share of
 # |d| count as their middles do.
 _PATIENCE, _IMPATIENT = 5_000, 1e-5
-# Stretches that are looked at in all: minutes. A tenth of it is the most that was seen of thousands
-# of drawings. More: what has no end in sight goes on; fewer: what has one is refused.
+# Stretches that are looked at in all: minutes. More: what has no end in sight goes on; fewer: what
+# has one is refused.
 MOST_LOOKS = 50_000_000
 
 
