@@ -39,30 +39,3 @@ def pytest_collection_modifyitems(items: list[Any]) -> None:
     others = [item for item in items if item not in fits and item not in offsets]
     half = len(items) // 2 - len(fits)
     items[:] = [*fits, *others[:half], *offsets, *others[half:]]
-
-
-# The kernel files that call others, and which.
-_CALLED = {
-    "enclosure": ("bands", "chains", "feet"),
-    "chains": ("feet",),
-    "gaps": ("nearest", "parallels"),
-    "gather": ("gaps", "nearest", "parallels"),
-    "trim": ("gaps", "gather", "nearest", "parallels"),
-    "conic_arc": ("parallels",),
-    "conic_fit": ("conic_arc", "parallels"),
-}
-
-
-def _drop_stale_kernels() -> None:
-    """Numba sees when a file changes, but not when one that it calls does (numba issue 1833)."""
-    folder = Path(__file__).parent / "src" / "splinesdf" / "kernels"
-    for kernel, parts in _CALLED.items():
-        changed = max((folder / f"{name}.py").stat().st_mtime for name in parts)
-        for compiled in folder.glob(f"__pycache__/{kernel}.*.nb?"):
-            if compiled.stat().st_mtime < changed:
-                compiled.unlink()
-
-
-# Once, before any worker loads one.
-if "PYTEST_XDIST_WORKER" not in os.environ:
-    _drop_stale_kernels()
