@@ -222,7 +222,14 @@ def _split_turns(arcs: Arcs, axis: int, noise: float) -> Arcs:
         turns = _sign_changes(steps)
         done.append(_take(arcs, turns == 0))
         if np.any(turns == 1):
-            done.append(split(_take(arcs, turns == 1), _turn(steps[turns == 1])))
+            whole = _take(arcs, turns == 1)
+            halves = split(whole, _turn(steps[turns == 1]))
+            # A turn beside an end, where a formula's pieces begin, is rounding in where it is: the
+            # coordinate does not change between them, and the speck would have no direction.
+            change = np.ptp(halves.control[:, :, axis], axis=1).reshape(2, -1)
+            clear = (change > noise).all(axis=0)
+            done.append(_take(whole, ~clear))
+            done.append(_take(halves, np.tile(clear, 2)))
         arcs = split(_take(arcs, turns > 1), 0.5)
         if len(arcs.control) == 0:
             break
