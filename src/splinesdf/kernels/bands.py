@@ -6,11 +6,11 @@ Used by `enclosure`. The spline has the coefficients AA BB CC AB BC CA; p is the
 from __future__ import annotations
 
 from splinesdf._arrays import Floats
-from splinesdf._jit import kernel
+from splinesdf._jit import uncounted
 from splinesdf._tables import Asked
 
 
-@kernel
+@uncounted
 def meets(asked: Asked, low: float, high: float, c: Floats, grain: float) -> bool:
     """Whether the distance, from low to high, or the spline can be in a band, or around it."""
     bands = asked.bands
@@ -24,14 +24,14 @@ def meets(asked: Asked, low: float, high: float, c: Floats, grain: float) -> boo
     return False
 
 
-@kernel
+@uncounted
 def seen(errors: Floats, margin: float, value: float, room: float) -> float:
     """What |s - u| is at least in a corner or in p, where it is known up to some margins."""
     corners = max(abs(errors[0]), abs(errors[1]), abs(errors[2]))
     return float(max(0.0, corners - margin, abs(value) - room))
 
 
-@kernel
+@uncounted
 def seen_in_bands(
     asked: Asked,
     c: Floats,
@@ -69,7 +69,7 @@ def seen_in_bands(
     return found
 
 
-@kernel
+@uncounted
 def _counts(spline: tuple[bool, bool], distance: tuple[bool, bool], around: bool) -> bool:
     """Whether one is below and above a band's ends, or both together are."""
     if around:

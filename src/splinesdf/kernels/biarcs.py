@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 
 # Points of the run at which a biarc is measured, and at the least so many on each conic. The
 # deviation along a biarc has up to four bumps: with eight points each, what lies between two
@@ -32,7 +32,7 @@ _HALVINGS = 7
 _SHORTEST = 2.0**-30
 
 
-@kernel
+@uncounted
 def _point(arcs: Floats, weights: Floats, u: float) -> tuple[float, float, float, float]:
     """Where the run is at a parameter, conic i having [i, i + 1], and its unit tangent."""
     i = min(int(u), arcs.shape[0] - 1)
@@ -54,7 +54,7 @@ def _point(arcs: Floats, weights: Floats, u: float) -> tuple[float, float, float
     return x, y, tx, ty
 
 
-@kernel
+@uncounted
 def _knot(arcs: Floats, weights: Floats, tangents: Floats, u: float, knot: Floats) -> None:
     """Fill u, the point there, and the tangent: in joints that of both sides."""
     i = int(u)
@@ -66,7 +66,7 @@ def _knot(arcs: Floats, weights: Floats, tangents: Floats, u: float, knot: Float
     knot[0], knot[1], knot[2], knot[3], knot[4] = u, x, y, tx, ty
 
 
-@kernel
+@uncounted
 def _biarc(start: Floats, end: Floats) -> float:
     """The d of the biarc between two knots, 0 if there is none of two quarter turns at most."""
     vx, vy = end[1] - start[1], end[2] - start[2]
@@ -86,7 +86,7 @@ def _biarc(start: Floats, end: Floats) -> float:
     return d if d < np.inf else 0.0
 
 
-@kernel
+@uncounted
 def _off(vx: float, vy: float, nx: float, ny: float, bend: float) -> float:
     """How far a point is from a circle, both seen from a point of it with the normal n.
 
@@ -99,7 +99,7 @@ def _off(vx: float, vy: float, nx: float, ny: float, bend: float) -> float:
     return abs(inner / (1.0 + math.sqrt(square)))
 
 
-@kernel
+@uncounted
 def _fits(arcs: Floats, weights: Floats, start: Floats, end: Floats, tolerance: float) -> bool:
     """Whether the run between two knots is within the tolerance of their biarc.
 
@@ -149,7 +149,7 @@ def _fits(arcs: Floats, weights: Floats, start: Floats, end: Floats, tolerance: 
     return True
 
 
-@kernel
+@uncounted
 def _farthest(
     arcs: Floats,
     weights: Floats,

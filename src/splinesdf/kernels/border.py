@@ -25,7 +25,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 
 # Iterations of Newton or bisection at most: bisection halves an interval to rounding in 60.
 _STEPS = 64
@@ -172,14 +172,14 @@ def extend(
             )
 
 
-@kernel
+@uncounted
 def _length(x: float, y: float) -> float:
     """As hypot, in a fifth of its time where squares neither overflow nor vanish."""
     squared = x * x + y * y
     return math.sqrt(squared) if 1e-280 < squared < 1e300 else math.hypot(x, y)
 
 
-@kernel
+@uncounted
 def _seen_from(domain: Floats, side: int, x: float, y: float) -> tuple[float, float]:
     """Where a point is along the line of a side, from its start, and how far from it."""
     along, up = x - domain[0], y - domain[1]
@@ -192,7 +192,7 @@ def _seen_from(domain: Floats, side: int, x: float, y: float) -> tuple[float, fl
     return up, abs(along)
 
 
-@kernel
+@uncounted
 def _lower_bound(edges: Floats, i: int, j: int, drop: float, a: float, b: float) -> float:
     """What s + distance is at least between two knots: that of their chord, less the drop."""
     t0, t1 = edges[i, 0], edges[j, 0]
@@ -205,7 +205,7 @@ def _lower_bound(edges: Floats, i: int, j: int, drop: float, a: float, b: float)
     return least
 
 
-@kernel
+@uncounted
 def _least_on_edge(edges: Floats, i: int, a: float, b: float, foot: Floats) -> float:
     """The least s + distance between a knot and the next.
 

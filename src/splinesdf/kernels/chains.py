@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import uncounted
 from splinesdf._tables import Arclets, Bends
 from splinesdf.kernels.feet import derivatives
 
@@ -29,7 +29,7 @@ _MIXED = 1.1547005383792517
 _BEFORE, _START, _END, _AFTER = 1, 2, 4, 8
 
 
-@kernel
+@uncounted
 def side_of(bends: Bends, ids: Ints, near: Floats, count: int, nearest: float, grain: float) -> int:
     """-1 inside, 1 outside, by the arclets in which p has a foot; 0 if they do not agree."""
     side = 0
@@ -55,7 +55,7 @@ def side_of(bends: Bends, ids: Ints, near: Floats, count: int, nearest: float, g
     return side
 
 
-@kernel
+@uncounted
 def _joint(rows: Floats, before: int, after: int, vx: float, vy: float, r: float) -> int:
     """How arclets meet, v leading from p to where: 1 smoothly, 2 in a corner seen from outside.
 
@@ -69,7 +69,7 @@ def _joint(rows: Floats, before: int, after: int, vx: float, vy: float, r: float
     return 2 if vx * tx + vy * ty >= r * turn else 0
 
 
-@kernel
+@uncounted
 def find_chains(
     arclets: Arclets,
     bends: Bends,
@@ -121,7 +121,7 @@ def find_chains(
     return chains
 
 
-@kernel
+@uncounted
 def _model(
     arclets: Arclets,
     bends: Bends,
@@ -209,7 +209,7 @@ def _model(
     return True
 
 
-@kernel
+@uncounted
 def _at_foot(
     arclets: Arclets, bends: Bends, ids: Ints, chain: tuple[int, int, int], near: Floats
 ) -> tuple[float, float, float, float, bool]:
@@ -237,13 +237,13 @@ def _at_foot(
     return u, wx / u, wy / u, 1.0 / u, abs(turn) > _CUSP
 
 
-@kernel
+@uncounted
 def _bend(curvature: float, u: float, r: float) -> float:
     """The least of 1 + curvature times a distance that differs from u by r at most."""
     return 1.0 + curvature * u - abs(curvature) * r
 
 
-@kernel
+@uncounted
 def _place(ids: Ints, count: int, arclet: int) -> int:
     """Where in a list an arclet stands, -1 if it does not."""
     if arclet >= 0:
@@ -253,7 +253,7 @@ def _place(ids: Ints, count: int, arclet: int) -> int:
     return -1
 
 
-@kernel
+@uncounted
 def find_points(
     arclets: Arclets,
     bends: Bends,
@@ -301,6 +301,7 @@ def find_points(
     kept = 0
     for m in range(total):
         if models[m, 0] - nearest <= 2.0 * r + spare:
-            models[kept] = models[m]
+            for column in range(6):
+                models[kept, column] = models[m, column]
             kept += 1
     return kept

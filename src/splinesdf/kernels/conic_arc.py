@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats
-from splinesdf._jit import kernel
+from splinesdf._jit import uncounted
 from splinesdf._tables import Joints, Runs
 from splinesdf.kernels.parallels import parallel_point
 
@@ -38,7 +38,7 @@ _SAFE = 0.9
 _FLAT = 1e-11
 
 
-@kernel
+@uncounted
 def run_point(
     joints: Joints, runs: Runs, begin: int, place: float, distance: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -60,7 +60,7 @@ def run_point(
     return x, y, tx, ty, speed * (high - low), bend
 
 
-@kernel
+@uncounted
 def conic_arc(
     joints: Joints,
     runs: Runs,
@@ -132,7 +132,7 @@ def conic_arc(
     return worst / limit, ax + early * ux, ay + early * uy, math.sqrt(square)
 
 
-@kernel
+@uncounted
 def look(
     joints: Joints,
     runs: Runs,
@@ -173,7 +173,7 @@ def look(
     return count
 
 
-@kernel
+@uncounted
 def _barycentric(
     triangle: tuple[float, float, float, float, float, float], x: float, y: float
 ) -> tuple[float, float, float]:
@@ -186,7 +186,7 @@ def _barycentric(
     return 1.0 - b - c, b, c
 
 
-@kernel
+@uncounted
 def _off(
     triangle: tuple[float, float, float, float, float, float], square: float, x: float, y: float
 ) -> float:

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import ROUND, STRAIGHT, Joints, Runs
 from splinesdf.kernels.conic_arc import conic_arc, look, run_point
 
@@ -91,7 +91,7 @@ def fit_runs(
     return total
 
 
-@kernel
+@uncounted
 def _append(
     one: tuple[float, float, float, float, float, float, float],
     r: int,
@@ -109,7 +109,7 @@ def _append(
     return total + 1
 
 
-@kernel
+@uncounted
 def _straight(runs: Runs, r: int, arcs: Floats, weights: Floats, owner: Ints, total: int) -> int:
     ax, ay = runs.start[runs.first[r], 0], runs.start[runs.first[r], 1]
     last = runs.first[r + 1] - 1
@@ -118,7 +118,7 @@ def _straight(runs: Runs, r: int, arcs: Floats, weights: Floats, owner: Ints, to
     return _append(one, r, arcs, weights, owner, total)
 
 
-@kernel
+@uncounted
 def _round(runs: Runs, r: int, arcs: Floats, weights: Floats, owner: Ints, total: int) -> int:
     """Arcs of a circle, equal ones; both ends of the run are kept to the bit."""
     first, last = runs.first[r], runs.first[r + 1] - 1
@@ -146,7 +146,7 @@ def _round(runs: Runs, r: int, arcs: Floats, weights: Floats, owner: Ints, total
     return total
 
 
-@kernel
+@uncounted
 def _find_breaks(
     joints: Joints,
     runs: Runs,
@@ -235,7 +235,7 @@ def _free(
     return total
 
 
-@kernel
+@uncounted
 def _chord(
     joints: Joints,
     runs: Runs,
@@ -276,7 +276,7 @@ def _chord(
         length = 0.5 * length
 
 
-@kernel
+@uncounted
 def _farthest(
     joints: Joints,
     runs: Runs,
@@ -318,7 +318,7 @@ def _farthest(
             length = _GROWTH * low if high == np.inf else 0.5 * (low + high)
 
 
-@kernel
+@uncounted
 def _is_little(
     joints: Joints,
     runs: Runs,
@@ -337,7 +337,7 @@ def _is_little(
     return True
 
 
-@kernel
+@uncounted
 def _node(
     joints: Joints, runs: Runs, r: int, place: float, distance: float
 ) -> tuple[float, float, float, float]:

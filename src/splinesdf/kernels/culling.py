@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets, Cells
 
 # Nodes that a cell keeps at most. More: the walk of each point starts lower; fewer: less memory.
@@ -93,7 +93,7 @@ def cull_boxes(arclets: Arclets, boxes: Floats, starts: Ints, nodes: Ints) -> No
     starts[boxes.shape[0]] = total
 
 
-@kernel
+@uncounted
 def _shared(one: int, other: int, levels: int) -> int:
     """How many cells around a finest one, from the root on, are around the other one as well."""
     if one < 0:
@@ -106,7 +106,7 @@ def _shared(one: int, other: int, levels: int) -> int:
     return shared
 
 
-@kernel
+@uncounted
 def _cell(cells: Cells, cell: int, level: int) -> tuple[float, float, float]:
     """Center and half diagonal of the cell of a level in which a finest cell lies."""
     code = cell >> (2 * (cells.levels - level))
@@ -121,7 +121,7 @@ def _cell(cells: Cells, cell: int, level: int) -> tuple[float, float, float]:
     return x, y, 0.5 * math.sqrt(width * width + height * height)
 
 
-@kernel
+@uncounted
 def _cull(
     arclets: Arclets,
     x: float,
@@ -173,7 +173,7 @@ def _cull(
     return total
 
 
-@kernel
+@uncounted
 def _near_point(
     tree: Floats, arcs: Floats, x: float, y: float, stack: Ints, size: int
 ) -> tuple[float, float, float]:
@@ -205,7 +205,7 @@ def _near_point(
     return best, mx, my
 
 
-@kernel
+@uncounted
 def _about_nearest(arcs: Floats, i: int, x: float, y: float) -> tuple[float, float]:
     """The point of a nearly straight arclet at the parameter of the nearest one on its chord."""
     dx, dy = arcs[i, 1] - arcs[i, 3], arcs[i, 2] - arcs[i, 4]
@@ -219,7 +219,7 @@ def _about_nearest(arcs: Floats, i: int, x: float, y: float) -> tuple[float, flo
     return arcs[i, 3] + px, arcs[i, 4] + py
 
 
-@kernel
+@uncounted
 def _from_axis(tree: Floats, node: int, x: float, y: float) -> tuple[float, float]:
     """The vector to the point from the nearest one of a capsule's segment."""
     wx, wy = x - tree[node, 0], y - tree[node, 1]

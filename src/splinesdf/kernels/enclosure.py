@@ -21,7 +21,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets, Asked, Bends, Brackets, Candidates
 from splinesdf.kernels.bands import meets, seen, seen_in_bands
 from splinesdf.kernels.chains import find_chains, find_points, side_of
@@ -221,7 +221,7 @@ def _enclose_one(
         size += 2
 
 
-@kernel
+@uncounted
 def _halve(parts: Floats, at: int, other: int) -> None:
     """Put one half of triangle ``at`` in its place and the other one in place ``other``."""
     ax, ay, bx, by, cx, cy, aa, bb, cc, ab, bc, ca = parts[at]
@@ -232,7 +232,7 @@ def _halve(parts: Floats, at: int, other: int) -> None:
     parts[other] = (bx, by, cx, cy, mx, my, bb, cc, mm, bc, mc, mb)
 
 
-@kernel
+@uncounted
 def _listed(tree: Floats, kept: Ints, ids: Ints) -> int:
     """Fill the arclets under some nodes; how many they are, -1 if they are too many."""
     count = 0
@@ -246,7 +246,7 @@ def _listed(tree: Floats, kept: Ints, ids: Ints) -> int:
     return count
 
 
-@kernel
+@uncounted
 def _radius(triangle: Floats, px: float, py: float) -> float:
     """How far the corners are from p."""
     a = (triangle[0] - px) ** 2 + (triangle[1] - py) ** 2
@@ -254,7 +254,7 @@ def _radius(triangle: Floats, px: float, py: float) -> float:
     return math.sqrt(max(a, c)) * (1.0 + 1e-14)
 
 
-@kernel
+@uncounted
 def _steepest(triangle: Floats) -> float:
     """The largest slope of the spline on a triangle: its gradient is linear, so at a corner."""
     c = triangle[6:]
@@ -364,7 +364,7 @@ def _mean(models: Floats, chains: int, enough: float) -> float:
     return float(bound)
 
 
-@kernel
+@uncounted
 def _best_share(q: Floats, other: Floats) -> float:
     """The share of q in the mean of both that makes its smallest coefficient largest."""
     low, high = 0.0, 1.0

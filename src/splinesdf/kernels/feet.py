@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 
 # Halley's steps toward a foot on an arclet with a convex squared distance; the third power of a
 # step's error is left, so six are plenty, and a bracket keeps them safe.
@@ -96,7 +96,7 @@ def gather(
     return kept, nearest, exact
 
 
-@kernel
+@uncounted
 def _from_chord(arcs: Floats, i: int, vx: float, vy: float) -> float:
     """Distance to the chord of an arclet, a little less; v leads to the point from its start."""
     dx, dy = arcs[i, 1] - arcs[i, 3], arcs[i, 2] - arcs[i, 4]
@@ -106,7 +106,7 @@ def _from_chord(arcs: Floats, i: int, vx: float, vy: float) -> float:
     return math.sqrt(vx * vx + vy * vy) * (1.0 - 1e-12)
 
 
-@kernel
+@uncounted
 def _convex(second: Floats, vx: float, vy: float, r: float) -> bool:
     """Whether the squared distance to an arclet is convex for all points within r (2.2).
 
@@ -119,7 +119,7 @@ def _convex(second: Floats, vx: float, vy: float, r: float) -> bool:
     return bool(least > _CONVEX_NOISE * (vx * vx + vy * vy + second[4, 0]))
 
 
-@kernel
+@uncounted
 def _lower_bound(arcs: Floats, i: int, vx: float, vy: float) -> float:
     """A lower bound of the distance to an arclet from Bernstein coefficients (2.3)."""
     n = 2 * int(arcs[i, 0])
@@ -134,7 +134,7 @@ def _lower_bound(arcs: Floats, i: int, vx: float, vy: float) -> float:
     return math.sqrt(max(least - noise, 0.0))
 
 
-@kernel
+@uncounted
 def derivatives(arcs: Floats, i: int, t: float) -> tuple[float, float, float, float, float, float]:
     """An arclet minus its start, its first and its second derivative."""
     x = y = dx = dy = ddx = ddy = 0.0
@@ -145,7 +145,7 @@ def derivatives(arcs: Floats, i: int, t: float) -> tuple[float, float, float, fl
     return x, y, dx, dy, 2.0 * ddx, 2.0 * ddy
 
 
-@kernel
+@uncounted
 def _foot(arcs: Floats, i: int, px: float, py: float, start: float) -> float:
     """The root of h(t) = (c(t) - p) . c'(t), which rises from below zero to above, in [0, 1]."""
     low, high = 0.0, 1.0

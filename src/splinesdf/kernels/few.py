@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets, Candidates, Cells, Feet
 
 # Arclets of a cell that are tried. More: cells near the medial axis are taken too, but try more
@@ -117,7 +117,7 @@ def nearest_of_few(
                 feet.distance[k], feet.arclet[k] = np.inf, -1
 
 
-@kernel
+@uncounted
 def _reach(points: Floats) -> float:
     """How far the points are from the first of them, at most."""
     reach = 0.0
@@ -127,7 +127,7 @@ def _reach(points: Floats) -> float:
     return math.sqrt(reach)
 
 
-@kernel
+@uncounted
 def _total(tree: Floats, kept: Ints) -> int:
     """How many arclets there are under some nodes."""
     total = 0
@@ -136,7 +136,7 @@ def _total(tree: Floats, kept: Ints) -> int:
     return total
 
 
-@kernel
+@uncounted
 def _try_line(
     arcs: Floats, i: int, points: Floats, squared: Floats, arclet: Ints, at: Floats
 ) -> None:
@@ -153,7 +153,7 @@ def _try_line(
         at[p] = t if nearer else at[p]
 
 
-@kernel
+@uncounted
 def _bound(tree: Floats, node: int, x: float, y: float) -> float:
     """Nothing under the node is nearer than this."""
     wx, wy = x - tree[node, 0], y - tree[node, 1]
@@ -164,7 +164,7 @@ def _bound(tree: Floats, node: int, x: float, y: float) -> float:
     return float(math.sqrt(wx * wx + wy * wy) - tree[node, 5])
 
 
-@kernel
+@uncounted
 def _all_convex(tree: Floats, arcs: Floats, x: float, y: float, reach: float, kept: Ints) -> bool:
     """Whether the nodes are a few arclets, each with a convex D for all points near (x, y).
 
@@ -194,7 +194,7 @@ def _all_convex(tree: Floats, arcs: Floats, x: float, y: float, reach: float, ke
     return True
 
 
-@kernel
+@uncounted
 def _try_cubic(
     arcs: Floats, i: int, power: Floats, points: Floats, squared: Floats, arclet: Ints, at: Floats
 ) -> int:
@@ -240,7 +240,7 @@ def _try_cubic(
     return unfinished
 
 
-@kernel
+@uncounted
 def _try_arc(
     arcs: Floats, i: int, power: Floats, points: Floats, squared: Floats, arclet: Ints, at: Floats
 ) -> int:

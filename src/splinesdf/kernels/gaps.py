@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import uncounted
 from splinesdf._tables import Arclets, Joints, Scratch, Trimming
 from splinesdf.kernels.nearest import closest_on, point_on
 from splinesdf.kernels.parallels import parallel_point
@@ -26,7 +26,7 @@ _BESIDE = 0.7
 _STEPS = 80
 
 
-@kernel
+@uncounted
 def narrow(
     arclets: Arclets,
     joints: Joints,
@@ -115,7 +115,7 @@ def narrow(
     return low, high, left, not low < high
 
 
-@kernel
+@uncounted
 def _stays_nearer(
     arcs: Floats,
     row: Floats,
@@ -172,7 +172,7 @@ def _stays_nearer(
     return bool(gap + abs(slope) * length + 0.5 * max(over, 0.0) * length * length <= 0.0)
 
 
-@kernel
+@uncounted
 def _is_nearer_at_its_ends(
     arclets: Arclets,
     joints: Joints,
@@ -208,7 +208,7 @@ def _is_nearer_at_its_ends(
     return bool(gap + across + 0.5 * bend * length * length <= 0.0)
 
 
-@kernel
+@uncounted
 def _largest(a: float, b: float, low: float) -> float:
     """The largest value of a x^2 + b x for x from ``low`` to 1."""
     result = max(a * low * low + b * low, a + b)
@@ -217,7 +217,7 @@ def _largest(a: float, b: float, low: float) -> float:
     return result
 
 
-@kernel
+@uncounted
 def bend_range(
     trimming: Trimming, element: tuple[int, int], bend: float, width: float
 ) -> tuple[float, float]:
@@ -238,7 +238,7 @@ def bend_range(
     return -np.inf, np.inf
 
 
-@kernel
+@uncounted
 def _second_range(
     row: Floats,
     foot: tuple[float, float, float, float],
@@ -279,7 +279,7 @@ def _second_range(
     return under, over, slack
 
 
-@kernel
+@uncounted
 def _least_bend(row: Floats, foot: tuple[float, float, float, float], length: float) -> float:
     """A lower bound, not above 0, of the curvature of an arclet's distance within ``length``."""
     far, gx, gy, t = foot
@@ -301,7 +301,7 @@ def _least_bend(row: Floats, foot: tuple[float, float, float, float], length: fl
     return least / width if width > 0.0 else -np.inf
 
 
-@kernel
+@uncounted
 def gap_at(
     arclets: Arclets,
     joints: Joints,
@@ -318,7 +318,7 @@ def gap_at(
     return far - abs(trimming.distance) - _grain(joints, trimming, element, j)
 
 
-@kernel
+@uncounted
 def _grain(joints: Joints, trimming: Trimming, element: tuple[int, int], j: int) -> float:
     """By how much an arclet may be farther than the distance and still count as nearer.
 
@@ -334,7 +334,7 @@ def _grain(joints: Joints, trimming: Trimming, element: tuple[int, int], j: int)
     return trimming.grain
 
 
-@kernel
+@uncounted
 def _passes(
     arclets: Arclets,
     joints: Joints,

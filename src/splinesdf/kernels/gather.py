@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets, Joints, Scratch, Trimming
 from splinesdf.kernels.gaps import bend_range
 from splinesdf.kernels.nearest import capsule_distance, point_on, search
@@ -21,7 +21,7 @@ from splinesdf.kernels.parallels import parallel_point
 _LOOKED = 32
 
 
-@kernel
+@uncounted
 def gather(
     arclets: Arclets,
     place: Ints,
@@ -67,7 +67,7 @@ def gather(
     return count
 
 
-@kernel
+@uncounted
 def _apart(tree: Floats, node: int, segment: tuple[float, float, float, float]) -> float:
     """Nothing under a node of the tree is nearer to a segment than this."""
     ax, ay, bx, by = segment
@@ -89,7 +89,7 @@ def _apart(tree: Floats, node: int, segment: tuple[float, float, float, float]) 
     return result
 
 
-@kernel
+@uncounted
 def is_near(arclets: Arclets, x: float, y: float, limit: float, scratch: Scratch) -> bool:
     """Whether anything is nearer to a point than the limit."""
     if limit <= 0.0:
@@ -147,7 +147,7 @@ def surfaces(
     return math.nan
 
 
-@kernel
+@uncounted
 def _nearest_along(
     arclets: Arclets,
     joints: Joints,
@@ -168,7 +168,7 @@ def _nearest_along(
     return x, y, far, ((x - px) * tx + (y - py) * ty) / far
 
 
-@kernel
+@uncounted
 def _stays_below(value: float, slope: float, bend: float) -> float:
     """How far what is below zero, has a slope, and bends up by no more than that, stays there."""
     return float((math.sqrt(max(slope * slope - 2.0 * bend * value, 0.0)) - slope) / bend)

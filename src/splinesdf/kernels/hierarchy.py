@@ -12,7 +12,7 @@ the nodes of the domain beside it, so that every function that reaches into a ce
 from __future__ import annotations
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Nodes
 
 # Where a neighbor would be: in the domain, but coarser; or beyond it.
@@ -99,13 +99,13 @@ def mark(nodes: Nodes, targets: Ints, split: Bools) -> bool:
     return again
 
 
-@kernel
+@uncounted
 def _outside(nodes: Nodes, node: int) -> bool:
     level, i, j = nodes.level[node], nodes.place[node, 0], nodes.place[node, 1]
     return not (0 <= i < nodes.shape[0] << level and 0 <= j < nodes.shape[1] << level)
 
 
-@kernel
+@uncounted
 def _ancestor(nodes: Nodes, level: int, i: int, j: int) -> int:
     """The node of a cell, or the finest one around it."""
     node = ((i >> level) + 1) * (nodes.shape[1] + 2) + (j >> level) + 1
@@ -157,7 +157,7 @@ def ordinates(nodes: Nodes, cells: Ints, values: Floats, result: Floats) -> None
         result[place, 7] = 0.5 * (c11 + c01)
 
 
-@kernel
+@uncounted
 def _block(
     nodes: Nodes, values: Floats, node: int
 ) -> tuple[float, float, float, float, float, float, float, float, float]:
@@ -175,7 +175,7 @@ def _block(
     )
 
 
-@kernel
+@uncounted
 def _near(nodes: Nodes, values: Floats, node: int, k: int) -> float:
     other = nodes.near[node, k]
     if other >= 0:
@@ -184,7 +184,7 @@ def _near(nodes: Nodes, values: Floats, node: int, k: int) -> float:
     return _subdivided(nodes, values, level, i + k // 3 - 1, j + k % 3 - 1)
 
 
-@kernel
+@uncounted
 def _subdivided(nodes: Nodes, values: Floats, level: int, i: int, j: int) -> float:
     """A coefficient from those of the level below, which are known where there are nodes.
 

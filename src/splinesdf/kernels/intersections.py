@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets
 
 # Pairs of nodes that wait to be looked at: a walk of two balanced trees over 2^60 arclets.
@@ -111,7 +111,7 @@ def find_crossings(
     return found
 
 
-@kernel
+@uncounted
 def _boxes_meet(boxes: Floats, one: int, other: int, tolerance: float) -> bool:
     return bool(
         boxes[one, 0] <= boxes[other, 2] + tolerance
@@ -235,7 +235,7 @@ def _meet(
     return found
 
 
-@kernel
+@uncounted
 def _add(pair: Ints, at: Floats, found: int, i: int, t: float, j: int, s: float) -> int:
     if found < pair.shape[0]:
         pair[found, 0], pair[found, 1] = i, j
@@ -243,7 +243,7 @@ def _add(pair: Ints, at: Floats, found: int, i: int, t: float, j: int, s: float)
     return found + 1
 
 
-@kernel
+@uncounted
 def _axis(cone: Floats, i: int, j: int) -> tuple[float, float]:
     """The unit vector along which both arclets move on: across the widest gap in directions."""
     # Directions that differ by half a turn are the same here.
@@ -259,25 +259,25 @@ def _axis(cone: Floats, i: int, j: int) -> tuple[float, float]:
     return math.cos(angle), math.sin(angle)
 
 
-@kernel
+@uncounted
 def _remainder(value: float, period: float) -> float:
     """The value less the nearest multiple of the period."""
     return float(value - period * math.floor(value / period + 0.5))
 
 
-@kernel
+@uncounted
 def _chord(arcs: Floats, i: int) -> float:
     return math.hypot(arcs[i, 1] - arcs[i, 3], arcs[i, 2] - arcs[i, 4])
 
 
-@kernel
+@uncounted
 def _reach(arcs: Floats, i: int, ux: float, uy: float) -> tuple[float, float]:
     start = arcs[i, 3] * ux + arcs[i, 4] * uy
     end = arcs[i, 1] * ux + arcs[i, 2] * uy
     return min(start, end), max(start, end)
 
 
-@kernel
+@uncounted
 def _point(arcs: Floats, i: int, t: float) -> tuple[float, float]:
     if t == 1.0:
         return arcs[i, 1], arcs[i, 2]
@@ -288,7 +288,7 @@ def _point(arcs: Floats, i: int, t: float) -> tuple[float, float]:
     return arcs[i, 3] + x, arcs[i, 4] + y
 
 
-@kernel
+@uncounted
 def _at(arcs: Floats, i: int, ux: float, uy: float, u: float) -> float:
     """The parameter at which arclet i is at u, or the end that is nearer to it."""
     start = arcs[i, 3] * ux + arcs[i, 4] * uy
@@ -326,14 +326,14 @@ def _at(arcs: Floats, i: int, ux: float, uy: float, u: float) -> float:
     return t
 
 
-@kernel
+@uncounted
 def _offset(arcs: Floats, i: int, j: int, ux: float, uy: float, u: float) -> float:
     x, y = _point(arcs, i, _at(arcs, i, ux, uy, u))
     other_x, other_y = _point(arcs, j, _at(arcs, j, ux, uy, u))
     return float((y - other_y) * ux - (x - other_x) * uy)
 
 
-@kernel
+@uncounted
 def _beside(control: Floats, end: int, tolerance: float) -> float:
     """The offset beside an end at which it is zero: that of the next coefficient that is not."""
     for n in range(1, 8):
@@ -343,7 +343,7 @@ def _beside(control: Floats, end: int, tolerance: float) -> float:
     return float(control[end])
 
 
-@kernel
+@uncounted
 def _root(
     arcs: Floats,
     i: int,

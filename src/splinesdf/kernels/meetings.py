@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 
 # Halvings of one arc: enough from any arc to rounding. The stack holds one pair more for each.
 _DEPTH = 128
@@ -122,7 +122,7 @@ def _meet(
     return False
 
 
-@kernel
+@uncounted
 def _leave_apart(arcs: Floats, i: int, j: int, following: Ints) -> bool:
     """Whether a line through the end that two arcs share has one on either side of it."""
     first, second = (i, j) if following[i] == j else (j, i)
@@ -140,7 +140,7 @@ def _leave_apart(arcs: Floats, i: int, j: int, following: Ints) -> bool:
     return True
 
 
-@kernel
+@uncounted
 def _separate(a: Floats, b: Floats) -> bool:
     """Whether a side of triangle a, or its chord's normal, has triangle b beyond it."""
     for k in range(3):
@@ -161,14 +161,14 @@ def _separate(a: Floats, b: Floats) -> bool:
     return False
 
 
-@kernel
+@uncounted
 def _extent(a: Floats) -> float:
     """The longest side of a triangle."""
     sides = math.hypot(a[2] - a[0], a[3] - a[1]), math.hypot(a[4] - a[2], a[5] - a[3])
     return float(max(sides[0], sides[1], math.hypot(a[4] - a[0], a[5] - a[1])))
 
 
-@kernel
+@uncounted
 def _farthest(a: Floats, x: float, y: float) -> float:
     """How far a triangle reaches from a point."""
     result = 0.0
@@ -177,7 +177,7 @@ def _farthest(a: Floats, x: float, y: float) -> float:
     return result
 
 
-@kernel
+@uncounted
 def _halve(whole: Floats, first: Floats, second: Floats) -> None:
     """Fill both halves of an arc, cut at its shoulder."""
     w = whole[6]

@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver, Scratch
 
 # Rounding in a coefficient of D, as a multiple of |p - start|^2 + |arc|^2: about three roundings
@@ -114,7 +114,7 @@ def room_to_search(arcs: Floats) -> Scratch:
     )
 
 
-@kernel
+@uncounted
 def search(
     tree: Floats,
     arcs: Floats,
@@ -173,7 +173,7 @@ def search(
     return best, found, found_at
 
 
-@kernel
+@uncounted
 def capsule_distance(tree: Floats, node: int, px: float, py: float) -> float:
     """Nothing under a node of the tree is nearer to a point than this."""
     wx, wy = _from_axis(tree, node, px, py)
@@ -181,7 +181,7 @@ def capsule_distance(tree: Floats, node: int, px: float, py: float) -> float:
     return float(math.sqrt(wx * wx + wy * wy) * (2.0 - _SLACK) - tree[node, 5])
 
 
-@kernel
+@uncounted
 def _from_axis(tree: Floats, node: int, px: float, py: float) -> tuple[float, float]:
     """The vector to the point from the nearest one of a capsule's segment."""
     wx, wy = px - tree[node, 0], py - tree[node, 1]
@@ -190,7 +190,7 @@ def _from_axis(tree: Floats, node: int, px: float, py: float) -> tuple[float, fl
     return wx - share * dx, wy - share * dy
 
 
-@kernel
+@uncounted
 def point_on(arcs: Floats, i: int, t: float) -> tuple[float, float]:
     """The point of arclet i at a parameter."""
     if t == 1.0:
@@ -202,13 +202,13 @@ def point_on(arcs: Floats, i: int, t: float) -> tuple[float, float]:
     return arcs[i, 3] + x, arcs[i, 4] + y
 
 
-@kernel
+@uncounted
 def _squared(arcs: Floats, i: int, t: float, px: float, py: float) -> float:
     x, y = point_on(arcs, i, t)
     return (x - px) * (x - px) + (y - py) * (y - py)
 
 
-@kernel
+@uncounted
 def _closest_on_line(arcs: Floats, i: int, px: float, py: float) -> tuple[float, float]:
     """Squared distance to a straight arclet, and its parameter."""
     vx, vy = px - arcs[i, 3], py - arcs[i, 4]
@@ -218,7 +218,7 @@ def _closest_on_line(arcs: Floats, i: int, px: float, py: float) -> tuple[float,
     return vx * vx + vy * vy, t
 
 
-@kernel
+@uncounted
 def closest_on(
     arcs: Floats, i: int, px: float, py: float, best: float, scratch: Scratch
 ) -> tuple[float, float]:
@@ -298,7 +298,7 @@ def closest_on(
     return result, result_at
 
 
-@kernel
+@uncounted
 def _foot(
     arcs: Floats, i: int, px: float, py: float, low: float, high: float, start: float
 ) -> float:

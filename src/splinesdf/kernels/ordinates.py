@@ -21,7 +21,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 
 # Points a block. More: the fetched rows, 64 bytes each, leave the first-level cache; fewer: the
 # fetching loop ends before memory is busy.
@@ -79,7 +79,7 @@ def evaluate_grid(
     return outside
 
 
-@kernel
+@uncounted
 def _interval(lines: Floats, count: int, scale: float, value: float) -> int:
     """The last line at or below the value: a guess as if uniform, bisection if that fails."""
     guess = min(max(int((value - lines[0]) * scale), 0), count - 1)
@@ -203,7 +203,7 @@ def fill_ways(
             entry[i, j] = node if child[node] >= 0 else ~(32 * cell_of[node] + up)
 
 
-@kernel
+@uncounted
 def _fetch_and_compute(
     powers: Floats,
     cells: Ints,
@@ -247,7 +247,7 @@ def _fetch_and_compute(
             hessian[first + k, 2] = (2.0 * a[5] + across + along) * in_y * in_y
 
 
-@kernel
+@uncounted
 def _value(a: Floats, s: float, t: float, right: float, left: float) -> float:
     return float(
         a[0]

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from splinesdf._arrays import Bools, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Joints, Trimming
 
 # How far a chain may turn (radians) and still be called the arclet's own. It must be below pi, by
@@ -98,13 +98,13 @@ def own_chains(joints: Joints, trimming: Trimming, bent: Bools, reach: Ints) -> 
                     reach[first + p, 2] = 1
 
 
-@kernel
+@uncounted
 def _dent(angle: float, distance: float) -> float:
     """How far a joint turns toward the offset."""
     return max(0.0, -angle if distance > 0.0 else angle)
 
 
-@kernel
+@uncounted
 def _is_wide(trimming: Trimming, i: int) -> bool:
     """Whether an arclet bends toward the offset by clearly less than 1 / |d|."""
     low, high, distance = trimming.bends[i, 0], trimming.bends[i, 1], trimming.distance

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Joints
 
 # Of an arclet's larger control step: slower than this, its direction is half rounding, and that
@@ -20,7 +20,7 @@ from splinesdf._tables import Joints
 _STANDS = 1e-8
 
 
-@kernel
+@uncounted
 def parallel_point(
     joints: Joints, element: tuple[int, int], t: float, distance: float
 ) -> tuple[float, float, float, float, float, float]:

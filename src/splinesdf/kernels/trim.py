@@ -24,7 +24,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets, Joints, Scratch, Trimming
 from splinesdf.kernels.gaps import bend_range, gap_at, narrow
 from splinesdf.kernels.gather import gather, is_near, surfaces
@@ -133,7 +133,7 @@ def trim(
     return total
 
 
-@kernel
+@uncounted
 def _forward(joints: Joints, trimming: Trimming, element: tuple[int, int], parts: Floats) -> int:
     """The parts of a bent arclet where its parallel runs forward, in order; how many."""
     i = element[0]
@@ -310,7 +310,7 @@ def _compare(
     return total
 
 
-@kernel
+@uncounted
 def _changes(
     arclets: Arclets,
     joints: Joints,
@@ -334,7 +334,7 @@ def _changes(
     return clear
 
 
-@kernel
+@uncounted
 def _append(
     element: tuple[int, int],
     span: tuple[float, float],

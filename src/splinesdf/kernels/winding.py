@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 from splinesdf._tables import Arclets
 
 _NEWTON_STEPS = 80
@@ -105,7 +105,7 @@ def _winding(arclets: Arclets, px: float, py: float, grain: float) -> tuple[int,
     return count, on
 
 
-@kernel
+@uncounted
 def _crossing(arcs: Floats, i: int, px: float, py: float, grain: float) -> tuple[int, bool]:
     """+1, -1 or 0: how the y-monotone arclet i crosses the ray from the point in +x.
 
