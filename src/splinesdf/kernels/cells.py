@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._jit import kernel
+from splinesdf._jit import kernel, uncounted
 
 
 @kernel
@@ -77,7 +77,7 @@ def sort_into_cells(
     starts[outside + 1] = total
 
 
-@kernel
+@uncounted
 def _spread(value: int) -> int:
     """The bits of a number below 2^16, with a zero in front of each."""
     value = (value | (value << 8)) & 0x00FF00FF
