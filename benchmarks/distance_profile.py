@@ -19,7 +19,7 @@ import numpy as np
 import splinesdf as ss
 from benchmarks.distance_speed import limacon_cubics, limacon_polygon
 from splinesdf._blocks import processors
-from splinesdf._tables import NOTHING, Feet
+from splinesdf._tables import NOTHING, Feet, Searched
 from splinesdf.culling import candidates_of_cells
 from splinesdf.distance import sorted_into_cells
 from splinesdf.kernels.few import nearest_of_few
@@ -32,7 +32,10 @@ SIDE, ROUNDS = 362, 7
 
 def steps(shape: ss.Shape, points: np.ndarray) -> tuple[dict[str, float], float]:
     """Seconds of each step, and the share of points that need no walk."""
-    boundary, count = shape.boundary, len(points)
+    boundary, outline, count = shape.boundary, shape.arclets, len(points)
+    largest = float(np.abs(boundary.boxes[0]).max())
+    searched = Searched(boundary.tree, boundary.arcs, largest)
+    ways = (outline.boxes, outline.range, outline.chain, outline.arcs)
     seconds: dict[str, float] = {}
     began = 0.0
 
@@ -51,12 +54,12 @@ def steps(shape: ss.Shape, points: np.ndarray) -> tuple[dict[str, float], float]
         feet = Feet(np.empty(count), np.empty(count, dtype=np.int64), np.empty(count), np.inf)
         done = np.zeros(len(cells.starts) - 1, dtype=np.bool_)
         lap("room")
-        nearest_of_few(boundary, cells, candidates, feet, done)
+        nearest_of_few(boundary.tree, boundary.arcs, cells, candidates, feet, done)
         lap("few")
-        nearest(boundary, cells, candidates, done, NOTHING, feet)
+        nearest(searched, cells, candidates, done, NOTHING, feet)
         lap("walk")
         inside = np.empty(count, dtype=np.bool_)
-        fill_inside(shape.arclets, cells.points, feet.distance, shape.fill == "evenodd", inside)
+        fill_inside(*ways, cells.points, feet.distance, shape.fill == "evenodd", inside)
         lap("side")
         result = np.empty(count)
         result[order] = np.where(inside, -feet.distance, feet.distance)

@@ -112,6 +112,25 @@ class Runs(NamedTuple):
     closed: Bools  # (n_runs,) it is a whole loop without a corner
 
 
+class Interpolation(NamedTuple):
+    """How a function is interpolated in eight places in [0, 1], and room for it."""
+
+    to_control: Floats  # (8, 8) from the values there to Bernstein coefficients
+    to_checks: Floats  # (7, 8) and to values between them
+    nodes: Floats  # (15,) the eight places, then the seven between them
+    values: Floats  # (15,) room
+    control: Floats  # (8,) room
+    spans: Floats  # (depth, 2) room for parts of an interval
+
+
+class Met(NamedTuple):
+    """Places that two arclets share, as the kernel fills them in."""
+
+    pair: Ints  # (capacity, 2) arclets
+    at: Floats  # (capacity, 2) their parameters
+    count: Ints  # (1,) how many there are; what is beyond the capacity was not stored
+
+
 class Cells(NamedTuple):
     """Points sorted into the 4^levels finest cells of a quadtree, and one for those outside it."""
 
@@ -136,6 +155,14 @@ class PassedOver(NamedTuple):
 
 
 NOTHING = PassedOver(np.empty(0, dtype=np.int64), -1.0)
+
+
+class Searched(NamedTuple):
+    """What the search for the nearest reads of `Arclets`."""
+
+    tree: Floats
+    arcs: Floats
+    largest: float  # coordinate, without its sign
 
 
 class Feet(NamedTuple):

@@ -37,7 +37,8 @@ def closest_candidates(shape: Shape, boxes: ArrayLike) -> tuple[Ints, Ints]:
     count = len(array)
     starts = np.empty(count + 1, dtype=np.int64)
     nodes = np.empty(count * MOST_KEPT, dtype=np.int64)
-    cull_boxes(boundary, array - np.tile(boundary.origin, 2), starts, nodes)
+    local = array - np.tile(boundary.origin, 2)
+    cull_boxes(boundary.tree, boundary.arcs, local, starts, nodes)
     first, end = boundary.range[nodes[: starts[-1]]].T
     sizes = end - first
     ends = np.concatenate([[0], np.cumsum(sizes)])
@@ -52,5 +53,5 @@ def candidates_of_cells(boundary: Arclets, cells: Cells) -> Candidates:
     count = len(cells.starts) - 1
     starts = np.empty(count + 1, dtype=np.int64)
     nodes = np.empty(count * MOST_KEPT, dtype=np.int64)
-    cull_cells(boundary, cells, starts, nodes)
+    cull_cells(boundary.tree, boundary.arcs, cells, starts, nodes)
     return Candidates(starts, nodes)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from splinesdf._arrays import Floats, Ints, as_points, positive, whole
 from splinesdf._blocks import in_blocks, processors
-from splinesdf._tables import NOTHING, Arclets, Cells, Feet
+from splinesdf._tables import NOTHING, Arclets, Cells, Feet, Searched
 from splinesdf.culling import candidates_of_cells
 from splinesdf.curves.geometry import derivatives_at, points_at, turns
 from splinesdf.curves.shape import Shape
@@ -292,7 +292,8 @@ def _feet(
     outline = shape.arclets
     count = len(points)
     local = points - boundary.origin
-    reach = _FAR * float(np.abs(boundary.boxes[0]).max())
+    largest = float(np.abs(boundary.boxes[0]).max())
+    reach = _FAR * largest
     far = np.flatnonzero(np.abs(local).max(axis=1, initial=0.0) > reach)
     far = far[np.isfinite(points[far]).all(axis=1)]
     beyond = local[far]
@@ -306,12 +307,21 @@ def _feet(
     )
     candidates = candidates_of_cells(boundary, cells)
     done = np.zeros(len(cells.starts) - 1, dtype=np.bool_)
-    nearest_of_few(boundary, cells, candidates, feet, done)
-    nearest(boundary, cells, candidates, done, NOTHING, feet)
+    nearest_of_few(boundary.tree, boundary.arcs, cells, candidates, feet, done)
+    searched = Searched(boundary.tree, boundary.arcs, largest)
+    nearest(searched, cells, candidates, done, NOTHING, feet)
     np.minimum(feet.distance, farthest, out=feet.distance)  # no point is known to be farther off
-    finite = slice(0, cells.starts[-1])
     inside = np.zeros(count, dtype=np.bool_)
-    fill_inside(outline, cells.points[finite], feet.distance, shape.fill == "evenodd", inside)
+    fill_inside(
+        outline.boxes,
+        outline.range,
+        outline.chain,
+        outline.arcs,
+        cells.points[: cells.starts[-1]],
+        feet.distance,
+        shape.fill == "evenodd",
+        inside,
+    )
     np.negative(feet.distance, out=feet.distance, where=inside)
     if len(far):
         place = np.argsort(order)[far]

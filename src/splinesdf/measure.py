@@ -172,7 +172,7 @@ def _enclose(
         here = boxes[block.start // in_box : block.stop // in_box]
         starts = np.empty(len(here) + 1, dtype=np.int64)
         nodes = np.empty(len(here) * MOST_KEPT, dtype=np.int64)
-        cull_boxes(boundary, here, starts, nodes)
+        cull_boxes(boundary.tree, boundary.arcs, here, starts, nodes)
         size = block.stop - block.start
         asked = Asked(
             triangles=triangles[block],

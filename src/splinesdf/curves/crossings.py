@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import Arclets
+from splinesdf._tables import Arclets, Interpolation, Met
 from splinesdf.curves.nodes import CHECKS, NODES, TO_CHECKS, TO_CONTROL
 
 # Steps between control points below this share of the arclet's size have no direction: at a
@@ -41,15 +41,34 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
     cone = _cones(arclets)
     # Of three checks between each two nodes the middle one will do here: halving finds the rest.
     nodes = np.concatenate([NODES, CHECKS[1::3]])
-    to_checks = TO_CHECKS[1::3].copy()
+    interpolation = Interpolation(
+        to_control=TO_CONTROL,
+        to_checks=TO_CHECKS[1::3].copy(),
+        nodes=nodes,
+        values=np.empty(len(nodes)),
+        control=np.empty(len(TO_CONTROL)),
+        spans=np.empty((intersections.DEPTH + 2, 2)),
+    )
     capacity = _CAPACITY
     while True:
-        pair, at = np.empty((capacity, 2), dtype=np.int64), np.empty((capacity, 2))
-        count = intersections.find_crossings(
-            arclets, cone, tolerance, TO_CONTROL, to_checks, nodes, pair, at
+        met = Met(
+            pair=np.empty((capacity, 2), dtype=np.int64),
+            at=np.empty((capacity, 2)),
+            count=np.zeros(1, dtype=np.int64),
         )
+        intersections.find_crossings(
+            arclets.boxes,
+            arclets.range,
+            arclets.following,
+            arclets.arcs,
+            cone,
+            tolerance,
+            interpolation,
+            met,
+        )
+        count = int(met.count[0])
         if count <= capacity:
-            return Crossings(pair[:count], at[:count])
+            return Crossings(met.pair[:count], met.at[:count])
         capacity = count
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver
+from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver, Searched
 from splinesdf.curves.crossings import degrees
 from splinesdf.curves.geometry import points_at, tangents_at
 from splinesdf.curves.parts import MERGE, Parts, chain_ends, groups
@@ -69,7 +69,17 @@ def look_at_sides(outline: Arclets, parts: Parts, evenodd: bool, touching: float
         points = place[best] + side * reach[:, None] * normal
         filled = np.empty(len(best), dtype=np.bool_)
         # Zero: no point says anything about the next one.
-        fill_inside(outline, points, np.zeros(len(best)), evenodd, filled)
+        nowhere = np.zeros(len(best))
+        fill_inside(
+            outline.boxes,
+            outline.range,
+            outline.chain,
+            outline.arcs,
+            points,
+            nowhere,
+            evenodd,
+            filled,
+        )
         sides.append(filled)
     return Sides(
         left=sides[0],
@@ -101,7 +111,9 @@ def _others(
         farthest=np.inf,
     )
     done = np.zeros(count, dtype=np.bool_)
-    nearest(outline, cells, candidates, done, PassedOver(own, within), feet)
+    largest = float(np.abs(outline.boxes[0]).max())
+    searched = Searched(outline.tree, outline.arcs, largest)
+    nearest(searched, cells, candidates, done, PassedOver(own, within), feet)
     return feet.distance, feet.arclet, feet.at
 
 

@@ -13,12 +13,13 @@ so the node can be left if e - d > |m - n| r + r^2 / (2 (d - r)), and always if 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel, uncounted
-from splinesdf._tables import Arclets, Cells
+from splinesdf._tables import Cells
 
 # Nodes that a cell keeps at most. More: the walk of each point starts lower; fewer: less memory.
 MOST_KEPT = 48
@@ -33,24 +34,42 @@ _GRAIN = 16 * 2.220446049250313e-16
 _NODE_SIZE = 2.0
 
 
+class _Room(NamedTuple):
+    """What the cells around the current one keep, and room for the walk."""
+
+    kept: Ints  # (levels + 2, MOST_KEPT) of the cell of each level; level 0 is the whole plane
+    count: Ints  # (levels + 2,) how many
+    bounds: Floats  # (MOST_KEPT,)
+    stack: Ints
+
+
 @kernel
-def cull_cells(arclets: Arclets, cells: Cells, starts: Ints, nodes: Ints) -> None:
+def cull_cells(tree: Floats, arcs: Floats, cells: Cells, starts: Ints, nodes: Ints) -> None:
     """Fill the candidates of all cells that have two points or more; for the others, the root.
 
     Parameters
     ----------
-    arclets : Arclets
+    tree, arcs : ndarray
+        Of `Arclets`.
     cells : Cells
-        Relative to ``arclets.origin``.
+        Relative to the arclets' origin.
     starts, nodes : ndarray, shapes (n_cells + 1,), (n_cells * MOST_KEPT,)
         As in `Candidates`; the end of ``nodes`` is left as it is.
     """
-    stack = np.empty(_STACK, dtype=np.int64)
-    # What the cell of each level around the current one keeps: level 0 is the whole plane.
-    kept = np.zeros((cells.levels + 2, MOST_KEPT), dtype=np.int64)
-    bounds = np.empty(MOST_KEPT)
-    count = np.ones(cells.levels + 2, dtype=np.int64)
-    last_cell = -1
+    room = _Room(
+        np.zeros((cells.levels + 2, MOST_KEPT), dtype=np.int64),
+        np.ones(cells.levels + 2, dtype=np.int64),
+        np.empty(MOST_KEPT),
+        np.empty(_STACK, dtype=np.int64),
+    )
+    _cull_all(tree, arcs, cells, room, starts, nodes)
+
+
+@uncounted
+def _cull_all(
+    tree: Floats, arcs: Floats, cells: Cells, room: _Room, starts: Ints, nodes: Ints
+) -> None:
+    last_cell = np.int64(-1)
     total = 0
     last = cells.starts.shape[0] - 2
     for cell in range(last + 1):
@@ -60,26 +79,24 @@ def cull_cells(arclets: Arclets, cells: Cells, starts: Ints, nodes: Ints) -> Non
         if cell < last and cells.starts[cell + 1] - cells.starts[cell] > 1:
             level = cells.levels + 1
             for around in range(_shared(last_cell, cell, cells.levels), level):
-                x, y, reach = _cell(cells, cell, around)
-                count[around + 1] = _cull(
-                    arclets,
-                    x,
-                    y,
-                    reach,
-                    kept[around, : count[around]],
-                    kept[around + 1],
-                    bounds,
-                    stack,
+                room.count[around + 1] = _cull(
+                    tree,
+                    arcs,
+                    _disk(cells, cell, around),
+                    room.kept[around, : room.count[around]],
+                    room.kept[around + 1],
+                    room.bounds,
+                    room.stack,
                 )
             last_cell = cell
-        for j in range(count[level]):
-            nodes[total] = kept[level, j]
+        for j in range(room.count[level]):
+            nodes[total] = room.kept[level, j]
             total += 1
     starts[last + 1] = total
 
 
 @kernel
-def cull_boxes(arclets: Arclets, boxes: Floats, starts: Ints, nodes: Ints) -> None:
+def cull_boxes(tree: Floats, arcs: Floats, boxes: Floats, starts: Ints, nodes: Ints) -> None:
     """Fill the candidates of boxes (n, 4), each from the root of the tree; see `cull_cells`."""
     stack = np.empty(_STACK, dtype=np.int64)
     root, bounds = np.zeros(1, dtype=np.int64), np.empty(MOST_KEPT)
@@ -89,7 +106,7 @@ def cull_boxes(arclets: Arclets, boxes: Floats, starts: Ints, nodes: Ints) -> No
         width, height = boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1]
         reach = 0.5 * math.sqrt(width * width + height * height)
         x, y = 0.5 * (boxes[i, 0] + boxes[i, 2]), 0.5 * (boxes[i, 1] + boxes[i, 3])
-        total += _cull(arclets, x, y, reach, root, nodes[total:], bounds, stack)
+        total += _cull(tree, arcs, (x, y, reach), root, nodes[total:], bounds, stack)
     starts[boxes.shape[0]] = total
 
 
@@ -107,7 +124,7 @@ def _shared(one: int, other: int, levels: int) -> int:
 
 
 @uncounted
-def _cell(cells: Cells, cell: int, level: int) -> tuple[float, float, float]:
+def _disk(cells: Cells, cell: int, level: int) -> tuple[float, float, float]:
     """Center and half diagonal of the cell of a level in which a finest cell lies."""
     code = cell >> (2 * (cells.levels - level))
     column = row = 0
@@ -123,21 +140,20 @@ def _cell(cells: Cells, cell: int, level: int) -> tuple[float, float, float]:
 
 @uncounted
 def _cull(
-    arclets: Arclets,
-    x: float,
-    y: float,
-    reach: float,
+    tree: Floats,
+    arcs: Floats,
+    disk: tuple[float, float, float],
     parent: Ints,
     kept: Ints,
     bounds: Floats,
     stack: Ints,
 ) -> int:
-    """Fill the nodes under the parent's that can be closest within ``reach`` of (x, y)."""
-    tree = arclets.tree
+    """Fill the nodes under the parent's that can be closest in a disk: x, y and radius."""
+    x, y, reach = disk
     size = parent.shape[0]
     for j in range(size):
         stack[j] = parent[size - 1 - j]
-    distance, mx, my = _near_point(tree, arclets.arcs, x, y, stack, size)
+    distance, mx, my = _near_point(tree, arcs, x, y, stack, size)
     grain = _GRAIN * (abs(tree[0, 0]) + abs(tree[0, 1]) + abs(tree[0, 2]) + abs(tree[0, 3]))
     reach += _SLACK * (distance + reach) + grain
     far = distance > 1.5 * reach

@@ -15,7 +15,7 @@ import numpy as np
 
 from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._jit import kernel, uncounted
-from splinesdf._tables import Arclets, Candidates, Cells, Feet
+from splinesdf._tables import Candidates, Cells, Feet
 
 # Arclets of a cell that are tried. More: cells near the medial axis are taken too, but try more
 # arclets in vain.
@@ -34,15 +34,16 @@ _DEGREE = 7
 
 @kernel
 def nearest_of_few(
-    arclets: Arclets, cells: Cells, candidates: Candidates, feet: Feet, done: Bools
+    tree: Floats, arcs: Floats, cells: Cells, candidates: Candidates, feet: Feet, done: Bools
 ) -> None:
     """Fill the closest points of all points of the cells that can be done in this way.
 
     Parameters
     ----------
-    arclets : Arclets
+    tree, arcs : ndarray
+        Of `Arclets`.
     cells : Cells
-        Of points relative to ``arclets.origin``; finite where a cell holds them.
+        Of points relative to the arclets' origin; finite where a cell holds them.
     candidates : Candidates
         Of these cells.
     feet : Feet
@@ -50,71 +51,65 @@ def nearest_of_few(
     done : ndarray of bool, shape (n_cells,)
         Filled.
     """
-    tree, arcs = arclets.tree, arclets.arcs
     power = np.empty((_DEGREE, 2))
     for cell in range(done.shape[0]):
-        first, end = cells.starts[cell], cells.starts[cell + 1]
-        kept = candidates.nodes[candidates.starts[cell] : candidates.starts[cell + 1]]
-        done[cell] = first == end
-        if first == end or arcs.shape[1] > 8 * (_DEGREE + 1):
+        done[cell] = _fill(tree, arcs, cells, candidates, cell, power, feet)
+
+
+@uncounted
+def _fill(
+    tree: Floats,
+    arcs: Floats,
+    cells: Cells,
+    candidates: Candidates,
+    cell: int,
+    power: Floats,
+    feet: Feet,
+) -> bool:
+    """Fill the closest points of a cell, and say whether it is done; ``power`` is room."""
+    first, end = cells.starts[cell], cells.starts[cell + 1]
+    if first == end:
+        return True
+    if arcs.shape[1] > 8 * (_DEGREE + 1):
+        return False
+    kept = candidates.nodes[candidates.starts[cell] : candidates.starts[cell + 1]]
+    points = cells.points[first:end]
+    reach = _reach(points)
+    # Lines alone have the narrowest rows.
+    lines = arcs.shape[1] == 16
+    if lines and _total(tree, kept) > _FEW_LINES:
+        return False
+    if not lines and not _all_convex(tree, arcs, points[0, 0], points[0, 1], reach, kept):
+        return False
+    done = True
+    distance, arclet, at = feet.distance[first:end], feet.arclet[first:end], feet.at[first:end]
+    for k in range(end - first):
+        distance[k], arclet[k] = np.inf, -1
+    for place in range(kept.shape[0]):
+        node = kept[place]
+        # The first candidate is the nearest: what is far from it is far from all.
+        if _bound(tree, node, points[0, 0], points[0, 1]) - reach > feet.farthest:
             continue
-        points = cells.points[first:end]
-        reach = _reach(points)
-        # Lines alone have the narrowest rows.
-        lines = arcs.shape[1] == 16
-        if lines and _total(tree, kept) > _FEW_LINES:
+        i = int(tree[node, 6])
+        if lines:
+            for j in range(i, int(tree[node, 7])):
+                _try_line(arcs, j, points, distance, arclet, at)
             continue
-        if not lines and not _all_convex(tree, arcs, points[0, 0], points[0, 1], reach, kept):
-            continue
-        done[cell] = True
-        feet.distance[first:end] = np.inf
-        feet.arclet[first:end] = -1
-        for node in kept:
-            # The first candidate is the nearest: what is far from it is far from all.
-            if _bound(tree, node, points[0, 0], points[0, 1]) - reach > feet.farthest:
-                continue
-            i = int(tree[node, 6])
-            if lines:
-                for j in range(i, int(tree[node, 7])):
-                    _try_line(
-                        arcs,
-                        j,
-                        points,
-                        feet.distance[first:end],
-                        feet.arclet[first:end],
-                        feet.at[first:end],
-                    )
-                continue
-            degree = int(arcs[i, 0])
-            power[:] = 0.0
-            for k in range(degree):
-                power[k, 0], power[k, 1] = arcs[i, 5 + 2 * k], arcs[i, 6 + 2 * k]
-            if degree <= 3:
-                unfinished = _try_cubic(
-                    arcs,
-                    i,
-                    power,
-                    points,
-                    feet.distance[first:end],
-                    feet.arclet[first:end],
-                    feet.at[first:end],
-                )
-            else:
-                unfinished = _try_arc(
-                    arcs,
-                    i,
-                    power,
-                    points,
-                    feet.distance[first:end],
-                    feet.arclet[first:end],
-                    feet.at[first:end],
-                )
-            if unfinished > 0:
-                done[cell] = False
-        for k in range(first, end):
-            feet.distance[k] = math.sqrt(feet.distance[k])
-            if feet.distance[k] > feet.farthest:
-                feet.distance[k], feet.arclet[k] = np.inf, -1
+        degree = int(arcs[i, 0])
+        for k in range(_DEGREE):
+            power[k, 0] = arcs[i, 5 + 2 * k] if k < degree else 0.0
+            power[k, 1] = arcs[i, 6 + 2 * k] if k < degree else 0.0
+        if degree <= 3:
+            unfinished = _try_cubic(arcs, i, power, points, distance, arclet, at)
+        else:
+            unfinished = _try_arc(arcs, i, power, points, distance, arclet, at)
+        if unfinished > 0:
+            done = False
+    for k in range(end - first):
+        distance[k] = math.sqrt(distance[k])
+        if distance[k] > feet.farthest:
+            distance[k], arclet[k] = np.inf, -1
+    return done
 
 
 @uncounted
@@ -131,7 +126,8 @@ def _reach(points: Floats) -> float:
 def _total(tree: Floats, kept: Ints) -> int:
     """How many arclets there are under some nodes."""
     total = 0
-    for node in kept:
+    for place in range(kept.shape[0]):
+        node = kept[place]
         total += int(tree[node, 7]) - int(tree[node, 6])
     return total
 
@@ -173,7 +169,8 @@ def _all_convex(tree: Floats, arcs: Floats, x: float, y: float, reach: float, ke
     """
     if kept.shape[0] > _FEW:
         return False
-    for node in kept:
+    for place in range(kept.shape[0]):
+        node = kept[place]
         i = int(tree[node, 6])
         if int(tree[node, 7]) - i > 1:
             return False

@@ -19,13 +19,13 @@ import numpy as np
 
 from splinesdf._arrays import Floats, Ints
 from splinesdf._jit import kernel, uncounted
-from splinesdf._tables import Arclets
+from splinesdf._tables import Interpolation, Met
 
 # Pairs of nodes that wait to be looked at: a walk of two balanced trees over 2^60 arclets.
 _STACK = 512
 # Halvings of a common stretch. Where a cusp makes the offset as steep as a root, halving goes on
 # until the rest is below the tolerance, 2^-47 of the size.
-_DEPTH = 50
+DEPTH = 50
 # An end and the other arclet at the same u may be this many times farther apart than they are:
 # the steepest graph has a slope of 2.4.
 _STEEP = 2.6
@@ -36,69 +36,48 @@ _LAST_BISECTION = 1e-16
 
 @kernel
 def find_crossings(
-    arclets: Arclets,
+    boxes: Floats,
+    ranges: Ints,
+    following: Ints,
+    arcs: Floats,
     cone: Floats,
     tolerance: float,
-    to_control: Floats,
-    to_checks: Floats,
-    nodes: Floats,
-    pair: Ints,
-    at: Floats,
-) -> int:
+    interpolation: Interpolation,
+    met: Met,
+) -> None:
     """Fill pairs of arclets and the parameters at which they cross, touch, or begin to coincide.
 
     Parameters
     ----------
-    arclets : Arclets
+    boxes, ranges, following, arcs : ndarray
+        Of `Arclets`.
     cone : ndarray, shape (n, 2)
         Middle and half width of the directions of each arclet, as angles.
     tolerance : float
         Nearer than this counts as touching.
-    to_control, to_checks : ndarray, shapes (8, 8), (7, 8)
-        From the values at the nodes to Bernstein coefficients, and to values between the nodes.
-    nodes : ndarray, shape (15,)
-        Eight places in [0, 1] where a function is interpolated, then the seven between them.
-    pair : ndarray, shape (capacity, 2)
-    at : ndarray, shape (capacity, 2)
-
-    Returns
-    -------
-    int
-        How many were found. If that is more than the capacity, the rest were not stored.
+    interpolation : Interpolation
+    met : Met
+        Filled.
     """
     stack = np.empty((_STACK, 2), dtype=np.int64)
     stack[0, 0] = stack[0, 1] = 0
     size = 1
-    found = 0
     while size > 0:
         size -= 1
         one, other = stack[size, 0], stack[size, 1]
-        if one != other and not _boxes_meet(arclets.boxes, one, other, tolerance):
+        if one != other and not _boxes_meet(boxes, one, other, tolerance):
             continue
-        count_one = arclets.range[one, 1] - arclets.range[one, 0]
-        count_other = arclets.range[other, 1] - arclets.range[other, 0]
+        count_one = ranges[one, 1] - ranges[one, 0]
+        count_other = ranges[other, 1] - ranges[other, 0]
         if count_one == 1 and count_other == 1:
             if one != other:
-                found = _meet(
-                    arclets,
-                    cone,
-                    tolerance,
-                    to_control,
-                    to_checks,
-                    nodes,
-                    arclets.range[one, 0],
-                    arclets.range[other, 0],
-                    pair,
-                    at,
-                    found,
-                )
+                i, j = ranges[one, 0], ranges[other, 0]
+                _meet(arcs, following, cone, tolerance, interpolation, i, j, met)
             continue
         if count_one < count_other:
             one, other = other, one
         left = one + 1
-        right = one + 2 * (
-            (arclets.range[one, 0] + arclets.range[one, 1]) // 2 - arclets.range[one, 0]
-        )
+        right = one + 2 * ((ranges[one, 0] + ranges[one, 1]) // 2 - ranges[one, 0])
         if one == other:
             stack[size, 0], stack[size, 1] = left, right
             stack[size + 1, 0], stack[size + 1, 1] = left, left
@@ -108,7 +87,6 @@ def find_crossings(
             stack[size, 0], stack[size, 1] = left, other
             stack[size + 1, 0], stack[size + 1, 1] = right, other
             size += 2
-    return found
 
 
 @uncounted
@@ -121,36 +99,32 @@ def _boxes_meet(boxes: Floats, one: int, other: int, tolerance: float) -> bool:
     )
 
 
-@kernel
+@uncounted
 def _meet(
-    arclets: Arclets,
+    arcs: Floats,
+    following: Ints,
     cone: Floats,
     tolerance: float,
-    to_control: Floats,
-    to_checks: Floats,
-    nodes: Floats,
+    interpolation: Interpolation,
     i: int,
     j: int,
-    pair: Ints,
-    at: Floats,
-    found: int,
-) -> int:
+    met: Met,
+) -> None:
     """Add the places where arclets i and j meet, other than a joint of theirs."""
-    joined, back = arclets.following[i] == j, arclets.following[j] == i
+    joined, back = following[i] == j, following[j] == i
     if joined != back:
         # Seen from the joint, one runs backwards. Directions that have none in common, but for
         # what rounding does to them, never lead to the same place again.
         turn = _remainder(cone[i, 0] - cone[j, 0] + math.pi, 2.0 * math.pi)
-        shorter = min(_chord(arclets.arcs, i), _chord(arclets.arcs, j))
+        shorter = min(_chord(arcs, i), _chord(arcs, j))
         if (abs(turn) - cone[i, 1] - cone[j, 1]) * shorter > tolerance:
-            return found
-    arcs = arclets.arcs
+            return
     ux, uy = _axis(cone, i, j)
     low_i, high_i = _reach(arcs, i, ux, uy)
     low_j, high_j = _reach(arcs, j, ux, uy)
     low, high = max(low_i, low_j), min(high_i, high_j)
     if high < low - tolerance:
-        return found
+        return
     for end in range(4):
         a, b = (i, j) if end < 2 else (j, i)
         t = float(end % 2)
@@ -165,20 +139,20 @@ def _meet(
             t_i, t_j = other_t, t
         is_joint = (joined and t_i == 1.0 and t_j == 0.0) or (back and t_i == 0.0 and t_j == 1.0)
         if not is_joint:
-            found = _add(pair, at, found, i, t_i, j, t_j)
+            _add(met, i, t_i, j, t_j)
     if high - low <= tolerance:
-        return found
+        return
     if arcs[i, 0] == 1.0 and arcs[j, 0] == 1.0:
         at_low, at_high = _offset(arcs, i, j, ux, uy, low), _offset(arcs, i, j, ux, uy, high)
         # On top of each other they have no crossing but the ends of their common stretch.
         if at_low * at_high < 0.0 and max(abs(at_low), abs(at_high)) > tolerance:
             u = low + (high - low) * at_low / (at_low - at_high)
             t, s = _at(arcs, i, ux, uy, u), _at(arcs, j, ux, uy, u)
-            found = _add(pair, at, found, i, t, j, s)
-        return found
-    values = np.empty(15)
-    control = np.empty(8)
-    spans = np.empty((_DEPTH + 2, 2))
+            _add(met, i, t, j, s)
+        return
+    values, control, spans = interpolation.values, interpolation.control, interpolation.spans
+    nodes, to_control = interpolation.nodes, interpolation.to_control
+    to_checks = interpolation.to_checks
     spans[0, 0], spans[0, 1] = low, high
     least, most = low, high
     size = 1
@@ -208,39 +182,37 @@ def _meet(
         at_low, at_high = values[0], values[7]
         # Zero in an end, as in a joint: what is beside it tells whether the arcs cross again.
         if low == least and at_low == 0.0:
-            at_low = _beside(control, 0, tolerance)
+            at_low = _beside(control, np.int64(0), tolerance)
         if high == most and at_high == 0.0:
-            at_high = _beside(control, 7, tolerance)
+            at_high = _beside(control, np.int64(7), tolerance)
         # A zero where two halves meet belongs to one of them.
         crosses = (at_low < 0.0) != (at_high < 0.0)
         if smallest > 2.0 * miss or largest < -2.0 * miss:
             continue
         flat = max(largest, -smallest) + miss <= tolerance
         if flat and low == least and high == most:
-            return found
+            return
         fits = miss <= 0.25 * tolerance
-        if flat or (fits and changes <= 1) or high - low <= tolerance or size + 2 > _DEPTH:
+        if flat or (fits and changes <= 1) or high - low <= tolerance or size + 2 > DEPTH:
             if crosses:
                 u = 0.5 * (low + high)
                 if not flat:
                     u = _root(arcs, i, j, ux, uy, (low, high), (at_low, at_high))
-                found = _add(
-                    pair, at, found, i, _at(arcs, i, ux, uy, u), j, _at(arcs, j, ux, uy, u)
-                )
+                _add(met, i, _at(arcs, i, ux, uy, u), j, _at(arcs, j, ux, uy, u))
             continue
         middle = 0.5 * (low + high)
         spans[size, 0], spans[size, 1] = low, middle
         spans[size + 1, 0], spans[size + 1, 1] = middle, high
         size += 2
-    return found
 
 
 @uncounted
-def _add(pair: Ints, at: Floats, found: int, i: int, t: float, j: int, s: float) -> int:
-    if found < pair.shape[0]:
-        pair[found, 0], pair[found, 1] = i, j
-        at[found, 0], at[found, 1] = t, s
-    return found + 1
+def _add(met: Met, i: int, t: float, j: int, s: float) -> None:
+    found = met.count[0]
+    if found < met.pair.shape[0]:
+        met.pair[found, 0], met.pair[found, 1] = i, j
+        met.at[found, 0], met.at[found, 1] = t, s
+    met.count[0] = found + 1
 
 
 @uncounted

@@ -20,7 +20,7 @@ import numpy as np
 
 from splinesdf._arrays import Bools, Floats
 from splinesdf._jit import kernel, uncounted
-from splinesdf._tables import Arclets, Candidates, Cells, Feet, PassedOver, Scratch
+from splinesdf._tables import Candidates, Cells, Feet, PassedOver, Scratch, Searched
 
 # Rounding in a coefficient of D, as a multiple of |p - start|^2 + |arc|^2: about three roundings
 # an operation over sums of at most 15 terms. Too small: a true minimum may be pruned by noise;
@@ -46,7 +46,7 @@ _GRAIN = 16 * 2.220446049250313e-16
 
 @kernel
 def nearest(
-    arclets: Arclets,
+    searched: Searched,
     cells: Cells,
     candidates: Candidates,
     done: Bools,
@@ -57,9 +57,9 @@ def nearest(
 
     Parameters
     ----------
-    arclets : Arclets
+    searched : Searched
     cells : Cells
-        Of points relative to ``arclets.origin``; finite where a cell holds them.
+        Of points relative to the arclets' origin; finite where a cell holds them.
     candidates : Candidates
         Of these cells.
     done : ndarray of bool, shape (n_cells,)
@@ -67,40 +67,53 @@ def nearest(
     feet : Feet
         Filled. A point farther than ``feet.farthest`` from the curve gets infinity and arclet -1.
     """
-    tree, arcs = arclets.tree, arclets.arcs
-    scratch = room_to_search(arcs)
+    scratch = room_to_search(searched.arcs)
+    for cell in range(done.shape[0]):
+        if not done[cell]:
+            _walk(searched, cells, candidates, cell, passed_over, feet, scratch)
+
+
+@uncounted
+def _walk(
+    searched: Searched,
+    cells: Cells,
+    candidates: Candidates,
+    cell: int,
+    passed_over: PassedOver,
+    feet: Feet,
+    scratch: Scratch,
+) -> None:
+    """Fill the closest point of each point of a cell."""
+    tree, arcs = searched.tree, searched.arcs
     # Rounding in a distance next to the curve.
-    grain = _GRAIN * np.abs(arclets.boxes[0]).max()
+    grain = _GRAIN * searched.largest
     limit = feet.farthest * _SLACK + grain
     alone = passed_over.own.shape[0] > 0
-    own = -1
+    own = np.int64(-1)
     ignored = passed_over.within * abs(passed_over.within)
-    for cell in range(done.shape[0]):
-        if done[cell]:
-            continue
-        kept, count = candidates.starts[cell], candidates.starts[cell + 1] - candidates.starts[cell]
-        last_x = last_y = 0.0
-        last_distance = np.inf
-        for i in range(cells.starts[cell], cells.starts[cell + 1]):
-            px, py = cells.points[i, 0], cells.points[i, 1]
-            if alone:
-                own = passed_over.own[i]
-            # The distance is 1-Lipschitz; what is added is for rounding.
-            step = math.sqrt((px - last_x) ** 2 + (py - last_y) ** 2)
-            best = min((last_distance + step) * _SLACK + grain, limit)
-            while True:
-                for j in range(count):
-                    # nearest ones last, on top of the stack
-                    scratch.nodes[j] = candidates.nodes[kept + count - 1 - j]
-                distance, found, t = search(tree, arcs, px, py, best, count, own, ignored, scratch)
-                if found >= 0 or best == limit:
-                    break
-                best = limit  # rounding hid the minimum from the neighbor's bound
-            feet.arclet[i], feet.at[i] = found, t
-            feet.distance[i] = distance if found >= 0 else np.inf
-            last_x, last_y = px, py
-            if not alone:
-                last_distance = distance if found >= 0 else feet.farthest
+    kept, count = candidates.starts[cell], candidates.starts[cell + 1] - candidates.starts[cell]
+    last_x = last_y = 0.0
+    last_distance = np.inf
+    for i in range(cells.starts[cell], cells.starts[cell + 1]):
+        px, py = cells.points[i, 0], cells.points[i, 1]
+        if alone:
+            own = passed_over.own[i]
+        # The distance is 1-Lipschitz; what is added is for rounding.
+        step = math.sqrt((px - last_x) ** 2 + (py - last_y) ** 2)
+        best = min((last_distance + step) * _SLACK + grain, limit)
+        while True:
+            for j in range(count):
+                # nearest ones last, on top of the stack
+                scratch.nodes[j] = candidates.nodes[kept + count - 1 - j]
+            distance, found, t = search(tree, arcs, px, py, best, count, own, ignored, scratch)
+            if found >= 0 or best == limit:
+                break
+            best = limit  # rounding hid the minimum from the neighbor's bound
+        feet.arclet[i], feet.at[i] = found, t
+        feet.distance[i] = distance if found >= 0 else np.inf
+        last_x, last_y = px, py
+        if not alone:
+            last_distance = distance if found >= 0 else feet.farthest
 
 
 @kernel

@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats
+from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf._jit import kernel, uncounted
-from splinesdf._tables import Arclets
 
 _NEWTON_STEPS = 80
 # Newton's last step: its error is about the square of this, so the parameter is good to rounding.
@@ -31,14 +30,21 @@ _SURE = 0.999999
 
 @kernel
 def fill_inside(
-    arclets: Arclets, points: Floats, distance: Floats, evenodd: bool, inside: Bools
+    boxes: Floats,
+    ranges: Ints,
+    chain: Ints,
+    arcs: Floats,
+    points: Floats,
+    distance: Floats,
+    evenodd: bool,
+    inside: Bools,
 ) -> None:
     """Fill whether each point is inside, by its winding number and the fill rule.
 
     Parameters
     ----------
-    arclets : Arclets
-        All the curves that were drawn, also those that bound nothing.
+    boxes, ranges, chain, arcs : ndarray
+        Of `Arclets`: all the curves that were drawn, also those that bound nothing.
     points : ndarray, shape (n, 2)
         Neighbors one after the other.
     distance : ndarray, shape (n,)
@@ -48,11 +54,12 @@ def fill_inside(
         Odd numbers are inside; otherwise all but zero.
     inside : ndarray of bool, shape (n,)
     """
+    nodes = np.empty(_STACK, dtype=np.int64)
     anchor_x = anchor_y = anchor_squared = 0.0
     last = False
     grain = 0.0
     for k in range(4):
-        grain = max(grain, _ON * abs(arclets.boxes[0, k]))
+        grain = max(grain, _ON * abs(boxes[0, k]))
     for i in range(points.shape[0]):
         px, py = points[i, 0], points[i, 1]
         here = (_SURE * distance[i]) ** 2
@@ -60,42 +67,65 @@ def fill_inside(
             if here > anchor_squared:
                 anchor_x, anchor_y, anchor_squared = px, py, here
         else:
-            number, on = _winding(arclets, px, py, grain)
-            away = _AWAY * distance[i]
-            for k in range(_AGAIN):
-                if not on or not away > grain:
-                    break
-                x, y = px + away * math.cos(k * _TURNED), py + away * math.sin(k * _TURNED)
-                again, on = _winding(arclets, x, y, grain)
-                number = number if on else again
+            number = _number(boxes, ranges, chain, arcs, nodes, (px, py), distance[i], grain)
             last = number % 2 != 0 if evenodd else number != 0
             anchor_x, anchor_y, anchor_squared = px, py, here
         inside[i] = last
 
 
-@kernel
-def _winding(arclets: Arclets, px: float, py: float, grain: float) -> tuple[int, bool]:
+@uncounted
+def _number(
+    boxes: Floats,
+    ranges: Ints,
+    chain: Ints,
+    arcs: Floats,
+    nodes: Ints,
+    point: tuple[float, float],
+    distance: float,
+    grain: float,
+) -> int:
+    """Winding number of a point; of one beside it if it is on a curve that bounds nothing."""
+    px, py = point
+    number, on = _winding(boxes, ranges, chain, arcs, nodes, px, py, grain)
+    away = _AWAY * distance
+    for k in range(_AGAIN):
+        if not on or not away > grain:
+            break
+        x, y = px + away * math.cos(k * _TURNED), py + away * math.sin(k * _TURNED)
+        again, on = _winding(boxes, ranges, chain, arcs, nodes, x, y, grain)
+        number = number if on else again
+    return number
+
+
+@uncounted
+def _winding(
+    boxes: Floats,
+    ranges: Ints,
+    chain: Ints,
+    arcs: Floats,
+    nodes: Ints,
+    px: float,
+    py: float,
+    grain: float,
+) -> tuple[int, bool]:
     """Winding number by the ray in +x, and whether the point is on a curve, to rounding.
 
-    A run of arclets right of the point counts by its ends.
+    A run of arclets right of the point counts by its ends. ``nodes`` is room for the walk.
     """
     on = False
-    nodes = np.empty(_STACK, dtype=np.int64)
     count = 0
     size = 1
     nodes[0] = 0
     while size > 0:
         size -= 1
         node = nodes[size]
-        if not (
-            arclets.boxes[node, 1] <= py < arclets.boxes[node, 3] and px <= arclets.boxes[node, 2]
-        ):
+        if not (boxes[node, 1] <= py < boxes[node, 3] and px <= boxes[node, 2]):
             continue
-        first, end = arclets.range[node, 0], arclets.range[node, 1]
-        if px < arclets.boxes[node, 0] and arclets.chain[node] == 1:
-            count += int(arclets.end[end - 1, 1] > py) - int(arclets.start[first, 1] > py)
+        first, end = ranges[node, 0], ranges[node, 1]
+        if px < boxes[node, 0] and chain[node] == 1:
+            count += int(arcs[end - 1, 2] > py) - int(arcs[first, 4] > py)
         elif end - first == 1:
-            crossing, near = _crossing(arclets.arcs, first, px, py, grain)
+            crossing, near = _crossing(arcs, first, px, py, grain)
             count += crossing
             on = on or near
         else:
