@@ -41,11 +41,17 @@ def end_tangents(arclets: Arclets) -> tuple[Floats, Floats]:
     return at_start, tangents_at(arclets, every, np.ones(len(every)))
 
 
-def turns(arclets: Arclets) -> Floats:
-    """By what angle the curve turns to the left where each arclet ends; 0 if it leads nowhere."""
+def joint_turns(arclets: Arclets) -> Floats:
+    """By what angle the curve turns to the left at the start and at the end of each arclet: (n, 2).
+
+    Zero at an end that leads nowhere.
+    """
     leaving, arriving = end_tangents(arclets)
-    turn = angles(arriving, leaving[arclets.following])
-    return np.where(arclets.following >= 0, turn, 0.0)
+    at_end = angles(arriving, leaving[arclets.following])
+    at_end = np.where(arclets.following >= 0, at_end, 0.0)
+    previous = np.full(len(at_end), -1)
+    previous[arclets.following] = np.arange(len(at_end))
+    return np.column_stack([at_end[previous], at_end])
 
 
 def angles(first: Floats, second: Floats) -> Floats:
