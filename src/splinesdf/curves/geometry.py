@@ -41,17 +41,19 @@ def end_tangents(arclets: Arclets) -> tuple[Floats, Floats]:
     return at_start, tangents_at(arclets, every, np.ones(len(every)))
 
 
-def joint_turns(arclets: Arclets) -> Floats:
-    """By what angle the curve turns to the left at the start and at the end of each arclet: (n, 2).
-
-    Zero at an end that leads nowhere.
-    """
+def turns(arclets: Arclets) -> Floats:
+    """By what angle the curve turns to the left where each arclet ends; 0 if it leads nowhere."""
     leaving, arriving = end_tangents(arclets)
-    at_end = angles(arriving, leaving[arclets.following])
-    at_end = np.where(arclets.following >= 0, at_end, 0.0)
-    previous = np.full(len(at_end), -1)
-    previous[arclets.following] = np.arange(len(at_end))
-    return np.column_stack([at_end[previous], at_end])
+    turn = angles(arriving, leaving[arclets.following])
+    return np.where(arclets.following >= 0, turn, 0.0)
+
+
+def turns_at_ends(arclets: Arclets) -> Floats:
+    """By what angle the curve turns to the left at the start and the end of each arclet: (n, 2)."""
+    turn = turns(arclets)
+    previous = np.full(len(turn), -1)
+    previous[arclets.following] = np.arange(len(turn))
+    return np.column_stack([turn[previous], turn])
 
 
 def angles(first: Floats, second: Floats) -> Floats:

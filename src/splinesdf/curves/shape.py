@@ -16,7 +16,7 @@ from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.bends import bends
 from splinesdf.curves.boundary import filled_boundary
 from splinesdf.curves.formula import parse_curve
-from splinesdf.curves.geometry import joint_turns
+from splinesdf.curves.geometry import turns_at_ends
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
 from splinesdf.curves.joints import joints
 from splinesdf.curves.kinds import kinds
@@ -339,7 +339,7 @@ class Shape:
     @cached_property
     def corners(self) -> Floats:
         """How far the boundary turns to the left at the start and end of each arc, (n, 2)."""
-        return joint_turns(self.boundary)
+        return turns_at_ends(self.boundary)
 
     def piece(self, index: int) -> Floats:
         """Control points of one piece, shape (degree + 1, 2)."""
