@@ -128,7 +128,7 @@ class Met(NamedTuple):
 
     pair: Ints  # (capacity, 2) arclets
     at: Floats  # (capacity, 2) their parameters
-    count: Ints  # (1,) how many there are; what is beyond the capacity was not stored
+    found: Ints  # (1,) how many there are; what is beyond the capacity was not stored
 
 
 class Cells(NamedTuple):

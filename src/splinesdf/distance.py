@@ -16,7 +16,7 @@ from splinesdf._arrays import Floats, Ints, as_points, positive, whole
 from splinesdf._blocks import in_blocks, processors
 from splinesdf._tables import NOTHING, Arclets, Cells, Feet, Searched
 from splinesdf.culling import candidates_of_cells
-from splinesdf.curves.geometry import derivatives_at, points_at, turns
+from splinesdf.curves.geometry import derivatives_at, points_at
 from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
 from splinesdf.meshes.mesh import Box, check_domain
@@ -212,7 +212,7 @@ def project(shape: Shape, points: ArrayLike) -> Projection:
     array = as_points(points)
     flat = array.reshape(-1, 2)
     boundary = shape.boundary
-    turn = turns(boundary)
+    turn = shape.corners
     count = len(flat)
     found = Projection(
         distance=np.empty(count),
@@ -356,14 +356,15 @@ def sorted_into_cells(points: Floats) -> tuple[Cells, Ints]:
 
 
 def _curvature(boundary: Arclets, turn: Floats, arclet: Ints, at: Floats) -> Floats:
-    """Curvature of arclets at parameters (n,), infinite where the curve has a corner."""
+    """Curvature of arclets at parameters (n,), infinite where the curve has a corner.
+
+    ``turn`` says by what angle it turns at the start and end of each arclet, (n_arclets, 2).
+    """
     first, second = derivatives_at(boundary, arclet, at)
     cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         result = cross / np.hypot(first[:, 0], first[:, 1]) ** 3
-    previous = np.full(len(turn), -1)
-    previous[boundary.following] = np.arange(len(turn))
-    for near_end, joint in ((at <= _AT_END, previous[arclet]), (at >= 1.0 - _AT_END, arclet)):
-        angle = np.where(near_end, turn[joint], 0.0)
+    for end, near_end in enumerate((at <= _AT_END, at >= 1.0 - _AT_END)):
+        angle = np.where(near_end, turn[arclet, end], 0.0)
         result = np.where(np.abs(angle) > _CORNER, np.copysign(np.inf, angle), result)
     return np.where(arclet >= 0, result, np.nan)

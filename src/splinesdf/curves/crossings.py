@@ -54,7 +54,7 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
         met = Met(
             pair=np.empty((capacity, 2), dtype=np.int64),
             at=np.empty((capacity, 2)),
-            count=np.zeros(1, dtype=np.int64),
+            found=np.zeros(1, dtype=np.int64),
         )
         intersections.find_crossings(
             arclets.boxes,
@@ -66,7 +66,7 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
             interpolation,
             met,
         )
-        count = int(met.count[0])
+        count = int(met.found[0])
         if count <= capacity:
             return Crossings(met.pair[:count], met.at[:count])
         capacity = count

@@ -48,6 +48,14 @@ def turns(arclets: Arclets) -> Floats:
     return np.where(arclets.following >= 0, turn, 0.0)
 
 
+def turns_at_ends(arclets: Arclets) -> Floats:
+    """By what angle the curve turns to the left at the start and the end of each arclet: (n, 2)."""
+    turn = turns(arclets)
+    previous = np.full(len(turn), -1)
+    previous[arclets.following] = np.arange(len(turn))
+    return np.column_stack([turn[previous], turn])
+
+
 def angles(first: Floats, second: Floats) -> Floats:
     """How far to turn left from one direction (n, 2) to the other, in (-pi, pi]: (n,)."""
     cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]

@@ -16,6 +16,7 @@ from splinesdf.curves.arclets import build_arclets
 from splinesdf.curves.bends import bends
 from splinesdf.curves.boundary import filled_boundary
 from splinesdf.curves.formula import parse_curve
+from splinesdf.curves.geometry import turns_at_ends
 from splinesdf.curves.interpolate import compile_curve, periodic_cubic_spline, polygon
 from splinesdf.curves.joints import joints
 from splinesdf.curves.kinds import kinds
@@ -334,6 +335,11 @@ class Shape:
     def kinds(self) -> Kinds:
         """Which arcs of the boundary are straight or parts of circles, made on first use."""
         return kinds(self.boundary)
+
+    @cached_property
+    def corners(self) -> Floats:
+        """How far the boundary turns to the left at the start and end of each arc, (n, 2)."""
+        return turns_at_ends(self.boundary)
 
     def piece(self, index: int) -> Floats:
         """Control points of one piece, shape (degree + 1, 2)."""

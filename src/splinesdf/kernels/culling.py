@@ -38,7 +38,7 @@ class _Room(NamedTuple):
     """What the cells around the current one keep, and room for the walk."""
 
     kept: Ints  # (levels + 2, MOST_KEPT) of the cell of each level; level 0 is the whole plane
-    count: Ints  # (levels + 2,) how many
+    sizes: Ints  # (levels + 2,) how many
     bounds: Floats  # (MOST_KEPT,)
     stack: Ints
 
@@ -69,7 +69,7 @@ def cull_cells(tree: Floats, arcs: Floats, cells: Cells, starts: Ints, nodes: In
 def _cull_all(
     tree: Floats, arcs: Floats, cells: Cells, room: _Room, starts: Ints, nodes: Ints
 ) -> None:
-    last_cell = np.int64(-1)
+    last_cell = int(np.int64(-1))  # a literal would be compiled for by itself
     total = 0
     last = cells.starts.shape[0] - 2
     for cell in range(last + 1):
@@ -79,17 +79,17 @@ def _cull_all(
         if cell < last and cells.starts[cell + 1] - cells.starts[cell] > 1:
             level = cells.levels + 1
             for around in range(_shared(last_cell, cell, cells.levels), level):
-                room.count[around + 1] = _cull(
+                room.sizes[around + 1] = _cull(
                     tree,
                     arcs,
                     _disk(cells, cell, around),
-                    room.kept[around, : room.count[around]],
+                    room.kept[around, : room.sizes[around]],
                     room.kept[around + 1],
                     room.bounds,
                     room.stack,
                 )
             last_cell = cell
-        for j in range(room.count[level]):
+        for j in range(room.sizes[level]):
             nodes[total] = room.kept[level, j]
             total += 1
     starts[last + 1] = total

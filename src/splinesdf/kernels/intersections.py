@@ -153,6 +153,8 @@ def _meet(
     values, control, spans = interpolation.values, interpolation.control, interpolation.spans
     nodes, to_control = interpolation.nodes, interpolation.to_control
     to_checks = interpolation.to_checks
+    # Places in ``control``, as variables: for each literal `_beside` would be compiled anew.
+    start, end = int(np.int64(0)), int(np.int64(7))
     spans[0, 0], spans[0, 1] = low, high
     least, most = low, high
     size = 1
@@ -182,9 +184,9 @@ def _meet(
         at_low, at_high = values[0], values[7]
         # Zero in an end, as in a joint: what is beside it tells whether the arcs cross again.
         if low == least and at_low == 0.0:
-            at_low = _beside(control, np.int64(0), tolerance)
+            at_low = _beside(control, start, tolerance)
         if high == most and at_high == 0.0:
-            at_high = _beside(control, np.int64(7), tolerance)
+            at_high = _beside(control, end, tolerance)
         # A zero where two halves meet belongs to one of them.
         crosses = (at_low < 0.0) != (at_high < 0.0)
         if smallest > 2.0 * miss or largest < -2.0 * miss:
@@ -208,11 +210,11 @@ def _meet(
 
 @uncounted
 def _add(met: Met, i: int, t: float, j: int, s: float) -> None:
-    found = met.count[0]
+    found = met.found[0]
     if found < met.pair.shape[0]:
         met.pair[found, 0], met.pair[found, 1] = i, j
         met.at[found, 0], met.at[found, 1] = t, s
-    met.count[0] = found + 1
+    met.found[0] = found + 1
 
 
 @uncounted

@@ -89,7 +89,7 @@ def _walk(
     grain = _GRAIN * searched.largest
     limit = feet.farthest * _SLACK + grain
     alone = passed_over.own.shape[0] > 0
-    own = np.int64(-1)
+    own = -1
     ignored = passed_over.within * abs(passed_over.within)
     kept, count = candidates.starts[cell], candidates.starts[cell + 1] - candidates.starts[cell]
     last_x = last_y = 0.0
