@@ -8,8 +8,8 @@ from pathlib import Path
 import splinesdf as ss
 from tests.glyphs import glyphs
 from tests.mechanical import parts
+from tests.named_shapes import FORMULAS, gamma
 from tests.real_shapes import icons, outlines
-from tests.shapes import FORMULAS, gamma
 
 PART = Path(ss.__file__).parent / "data" / "part.svg"
 

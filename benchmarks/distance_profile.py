@@ -18,13 +18,13 @@ import numpy as np
 
 import splinesdf as ss
 from benchmarks.distance_speed import limacon_cubics, limacon_polygon
-from splinesdf._blocks import processors
-from splinesdf._tables import NOTHING, Feet, Searched
-from splinesdf.culling import candidates_of_cells
-from splinesdf.distance import sorted_into_cells
-from splinesdf.kernels.few import nearest_of_few
-from splinesdf.kernels.nearest import nearest
-from splinesdf.kernels.winding import fill_inside
+from splinesdf.arclets.culling import candidates_of_cells
+from splinesdf.arclets.kernels.nearest import nearest
+from splinesdf.arclets.kernels.nearest_convex import nearest_of_few
+from splinesdf.arclets.kernels.winding import fill_inside
+from splinesdf.arclets.tables import NOTHING, Feet, Searched
+from splinesdf.distance.exact import sorted_into_cells
+from splinesdf.ground.blocks import processors
 from tests.glyphs import glyphs
 
 SIDE, ROUNDS = 362, 7

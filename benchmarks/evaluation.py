@@ -30,11 +30,11 @@ from scipy.interpolate import NdBSpline, RectBivariateSpline, interpn
 from scipy.ndimage import map_coordinates, spline_filter
 
 import splinesdf as ss
-from splinesdf import paper
 from splinesdf.meshes import Grid, Quadtree
-from splinesdf.quasi import quasi_interpolate
+from splinesdf.paper import tables as paper
 from splinesdf.spaces import hierarchical_ordinates
-from splinesdf.spline import SplineSDF
+from splinesdf.splines.quasi import quasi_interpolate
+from splinesdf.splines.spline import SplineSDF
 
 CELLS, SIDE, ROUNDS = 128, 700, 7
 NEAR = 0.05

@@ -30,10 +30,10 @@ from typing import Any
 import numpy as np
 
 import splinesdf as ss
-from splinesdf import paper
 from splinesdf.errors import ToleranceNotReached
-from splinesdf.fit import FitResult, fit_steps
+from splinesdf.fits.fit import FitResult, fit_steps
 from splinesdf.meshes import Box
+from splinesdf.paper import tables as paper
 from tests.glyphs import glyphs
 from tests.real_shapes import SMOOTH, formula_shape, icons, outlines
 

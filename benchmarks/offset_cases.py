@@ -21,8 +21,8 @@ import numpy as np
 import splinesdf as ss
 from tests.glyphs import glyphs
 from tests.mechanical import parts
+from tests.named_shapes import FORMULAS, Loops, gamma, loops_of
 from tests.real_shapes import formula_shape, icons
-from tests.shapes import FORMULAS, Loops, gamma, loops_of
 
 MOVES = (1e3, 1e4, 1e5, 1e6, 1e7, 1e8)  # sizes of the shape
 SCALES = (1e-6, 1e-3, 1e3, 1e6)

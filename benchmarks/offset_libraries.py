@@ -17,9 +17,9 @@ import numpy as np
 
 import splinesdf as ss
 from benchmarks.offset_truth import Answer
-from splinesdf._tables import Arclets
-from splinesdf.contour import Contour
-from splinesdf.curves.geometry import derivatives_at, points_at, tangents_at, turns
+from splinesdf.arclets.points import derivatives_at, points_at, tangents_at, turns
+from splinesdf.arclets.tables import Arclets
+from splinesdf.contours.contour import Contour
 
 # Where along an arclet its bend is looked at to choose the number of chords.
 _LOOKS = np.linspace(0.0, 1.0, 9)

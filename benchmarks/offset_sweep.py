@@ -23,14 +23,14 @@ from multiprocessing import get_context
 import numpy as np
 
 import splinesdf as ss
-from splinesdf.contour import Contour, evaluate
+from splinesdf.contours.contour import Contour, evaluate
 from tests import oracles
 from tests.glyphs import glyphs
 from tests.mechanical import AWKWARD, SPLINES, parts
+from tests.named_shapes import FORMULAS, gamma
 from tests.offset_checks import judge
 from tests.offset_count import loop_counts
 from tests.real_shapes import icons, outlines
-from tests.shapes import FORMULAS, gamma
 
 SHARES = tuple(sign * share for share in (1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3) for sign in (1.0, -1.0))
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)

@@ -25,7 +25,7 @@ import numpy as np
 
 import splinesdf as ss
 from benchmarks.offset_cases import PARTS, Case, cases, made
-from splinesdf.contour import Contour
+from splinesdf.contours.contour import Contour
 from tests.offset_checks import Verdict, check_chains
 from tests.offset_crossings import meetings
 from tests.offset_region import EPS, judge_region, slack

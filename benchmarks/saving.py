@@ -23,8 +23,8 @@ from pathlib import Path
 import numpy as np
 
 import splinesdf as ss
-from splinesdf import paper
 from splinesdf.meshes import Quadtree
+from splinesdf.paper import tables as paper
 
 ROUNDS = 5
 LOADER = """

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import splinesdf as ss
-from splinesdf.fit import Band
+from splinesdf.fits.fit import Band
 from tests.glyphs import CHARACTERS, glyphs
 
 # Rounding of exact distances and of spline values, as a share of the largest coordinate.

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from splinesdf.contour import Contour
+from splinesdf.contours.contour import Contour
 
 
 def circle(

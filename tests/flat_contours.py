@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from splinesdf.contour import Contour
+from splinesdf.contours.contour import Contour
 from tests import oracles
 
 # The most halvings of an arc's parameter for its line; and of a chord's, beside points.

@@ -5,7 +5,7 @@ by the roots of polynomials.
 import numpy as np
 import shapely
 
-from splinesdf.contour import Contour, evaluate
+from splinesdf.contours.contour import Contour, evaluate
 
 
 def apart(points: np.ndarray, contour: Contour, sag: float) -> np.ndarray:

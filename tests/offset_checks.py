@@ -22,7 +22,7 @@ import numpy as np
 import shapely
 
 import splinesdf as ss
-from splinesdf.contour import Contour, evaluate, halve
+from splinesdf.contours.contour import Contour, evaluate, halve
 from tests import oracles
 from tests.offset_corners import blunt_corners, corners_of, false_corners
 from tests.offset_count import loop_counts

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import splinesdf as ss
-from splinesdf.contour import Contour, evaluate
+from splinesdf.contours.contour import Contour, evaluate
 from tests.offset_crossings import angle
 
 EPS = float(np.finfo(np.float64).eps)

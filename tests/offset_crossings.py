@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from splinesdf.contour import Contour
+from splinesdf.contours.contour import Contour
 
 EPS = float(np.finfo(np.float64).eps)
 # Shares of the largest coordinate. Triangles are apart if a line keeps them more than the first

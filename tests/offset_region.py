@@ -27,7 +27,7 @@ import numpy as np
 import shapely
 
 import splinesdf as ss
-from splinesdf.contour import Contour
+from splinesdf.contours.contour import Contour
 from tests import oracles
 from tests.flat_contours import Line, flattened, on_arcs, winding_number
 from tests.offset_checks import Verdict

@@ -11,8 +11,8 @@ import numpy as np
 
 import splinesdf as ss
 from tests import oracles
+from tests.named_shapes import FORMULAS
 from tests.precise import Fourier
-from tests.shapes import FORMULAS
 
 DATA = Path(__file__).parent / "data"
 

@@ -15,7 +15,7 @@ import numpy as np
 
 import splinesdf as ss
 from splinesdf.meshes import Quadtree
-from splinesdf.provenance import Provenance
+from splinesdf.splines.provenance import Provenance
 from tests.naive_tree import refine
 
 MADE = Provenance(

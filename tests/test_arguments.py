@@ -18,11 +18,14 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf import culling, distance, plot, quasi
-from splinesdf.fit import fit_steps
+from splinesdf import plot
+from splinesdf.distance import candidates
+from splinesdf.distance import exact as distance
+from splinesdf.fits.fit import fit_steps
 from splinesdf.meshes import Grid, Quadtree
-from splinesdf.offset import deviation
-from splinesdf.spline import bspline
+from splinesdf.offsets.offset import deviation
+from splinesdf.splines import quasi
+from splinesdf.splines.spline import bspline
 
 CORNERS = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
 UNIT = (0.0, 0.0, 1.0, 1.0)
@@ -174,7 +177,7 @@ def offered() -> Iterator[tuple[str, Callable[..., Any]]]:
     }
     functions = [getattr(ss, name) for name in ss.__all__]
     functions += [fit_steps, deviation, bspline, distance.distance_and_gradient]
-    functions += [culling.closest_candidates, quasi.quasi_interpolate]
+    functions += [candidates.closest_candidates, quasi.quasi_interpolate]
     for function in functions:
         if inspect.isfunction(function):
             yield function.__name__, function

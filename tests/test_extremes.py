@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import splinesdf as ss
-from splinesdf.distance import distance_and_gradient
+from splinesdf.distance.exact import distance_and_gradient
 
 # What lies beside overflow, underflow and rounding, of a number, its square and its fourth power.
 MAGNITUDES = [

@@ -15,8 +15,8 @@ import pytest
 import shapely
 
 import splinesdf as ss
-from splinesdf.contour import Contour
-from splinesdf.fit import Band
+from splinesdf.contours.contour import Contour
+from splinesdf.fits.fit import Band
 from splinesdf.meshes import Box
 from tests.glyphs import glyphs
 

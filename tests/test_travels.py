@@ -25,11 +25,11 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.fit import fit_steps
+from splinesdf.fits.fit import fit_steps
 from splinesdf.io.enclosed import Sides
-from splinesdf.io.written import Worst
-from splinesdf.paper import Row
-from tests.shapes import gamma
+from splinesdf.io.remeasured import Worst
+from splinesdf.paper.tables import Row
+from tests.named_shapes import gamma
 
 
 def modules() -> Iterator[Any]:

@@ -1,10 +1,8 @@
 """Closed curves to a compact C¹ piecewise-quadratic signed distance function."""
 
-from splinesdf.biarcs import as_arcs
-from splinesdf.contour import Contour
-from splinesdf.curves.shape import Shape
-from splinesdf.distance import (
-    DistanceGrid,
+from splinesdf.contours.biarcs import as_arcs
+from splinesdf.contours.contour import Contour
+from splinesdf.distance.exact import (
     Projection,
     closest_point,
     project,
@@ -18,13 +16,15 @@ from splinesdf.errors import (
     SplineSDFError,
     ToleranceNotReached,
 )
-from splinesdf.fit import FitResult, fit
-from splinesdf.interpolation import interpolate
+from splinesdf.fits.fit import FitResult, fit
+from splinesdf.fits.interpolation import interpolate
 from splinesdf.io.input import read
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
-from splinesdf.offset import offset
-from splinesdf.spline import SplineSDF, load
+from splinesdf.meshes.lattice import DistanceGrid
+from splinesdf.offsets.offset import offset
+from splinesdf.shapes.shape import Shape
+from splinesdf.splines.spline import SplineSDF, load
 
 __version__ = "0.1.0"
 __all__ = [

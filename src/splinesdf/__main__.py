@@ -1,5 +1,5 @@
 """``python -m splinesdf``."""
 
-from splinesdf.cli import main
+from splinesdf.cli.main import main
 
 main()

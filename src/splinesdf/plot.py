@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Floats, as_floats, shown
-from splinesdf._atomic import atomic_file
-from splinesdf._paths import as_path
-from splinesdf.contour import Contour
-from splinesdf.curves.shape import Shape
-from splinesdf.distance import signed_distance_grid
+from splinesdf.contours.contour import Contour
+from splinesdf.distance.exact import signed_distance_grid
 from splinesdf.errors import InputError, MissingExtraError
-from splinesdf.fit import FitResult
+from splinesdf.fits.fit import FitResult
+from splinesdf.ground.arrays import Floats, as_floats, shown
+from splinesdf.ground.atomic import atomic_file
+from splinesdf.ground.paths import as_path
 from splinesdf.meshes import Box, Mesh
-from splinesdf.spline import SplineSDF
+from splinesdf.shapes.shape import Shape
+from splinesdf.splines.spline import SplineSDF
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

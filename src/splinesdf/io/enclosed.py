@@ -18,10 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf.curves.geometry import bezier_points
-from splinesdf.curves.shape import Shape
-from splinesdf.distance import signed_distance
+from splinesdf.arclets.points import bezier_points
+from splinesdf.distance.exact import signed_distance
+from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.shapes.shape import Shape
 
 # How far off the level points are asked, in tolerances, and how near they may turn out to be. As
 # curves are within one tolerance and their polylines within a quarter more, sides are sure there.

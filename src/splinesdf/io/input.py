@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from splinesdf._arrays import Floats
-from splinesdf._paths import as_path, shortened
-from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
+from splinesdf.ground.paths import as_path, shortened
 from splinesdf.io.readers import READERS
 from splinesdf.io.readers.points import read_blocks
+from splinesdf.shapes.shape import Shape
 
 
 def read(path: str | os.PathLike[str], *, fill: str | None = None, close: bool = False) -> Shape:

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from splinesdf._atomic import write_text
-from splinesdf._paths import as_path
-from splinesdf.contour import Contour, box, check_tolerance, smallest_tolerance
+from splinesdf.contours.contour import Contour, box, check_tolerance, smallest_tolerance
 from splinesdf.errors import InputError
+from splinesdf.ground.atomic import write_text
+from splinesdf.ground.paths import as_path
 from splinesdf.io.writers import WRITERS
 from splinesdf.io.writers.options import Milling, Options, check_options
 

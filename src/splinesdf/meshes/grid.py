@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf._arrays import Bools, Floats, Ints, as_floats, shown
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, shown
 from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from splinesdf._arrays import Floats, Ints, as_floats, shown, whole
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats, Ints, as_floats, shown, whole
 
 # Beyond it, or below its inverse, the squares of lengths overflow or vanish without a word.
 SQUARABLE = 1e100

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 # Lattice coordinates of the finest level, times a few roots, must stay far inside 63 bits when two

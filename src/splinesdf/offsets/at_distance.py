@@ -7,16 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import FREE, Runs
-from splinesdf.contour import Contour
-from splinesdf.curves.geometry import angles
-from splinesdf.curves.joints import CUSP
-from splinesdf.curves.shape import Shape
+from splinesdf.arclets.joints import CUSP
+from splinesdf.arclets.points import angles
+from splinesdf.arclets.tables import FREE
+from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.offsets.loops import Loops, loops_of
 from splinesdf.offsets.runs import runs_of
+from splinesdf.offsets.tables import Runs
 from splinesdf.offsets.trimmed import Stretches, joints_at, smooth_turn, trimmed
+from splinesdf.shapes.shape import Shape
 
 # Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
 # share of the tolerance and, if need be, to its powers.
@@ -140,7 +141,10 @@ def _fitted(
     shape: Shape, runs: Runs, distance: float, tolerance: Floats
 ) -> tuple[Floats, Floats, Ints]:
     """Arcs of all runs, relative to the boundary's origin, their weights, and their runs."""
-    from splinesdf.kernels.conic_fit import MOST_ARCS, fit_runs  # Numba loads only when it is used
+    from splinesdf.offsets.kernels.conic_fit import (  # Numba loads only when it is used
+        MOST_ARCS,
+        fit_runs,
+    )
 
     room = 4 * len(runs.kind) + 64
     while True:
@@ -161,7 +165,9 @@ def _fitted(
 
 def _meeting(arcs: Floats, weights: Floats, following: Ints) -> Ints:
     """Arcs that meet another one elsewhere than at an end they share."""
-    from splinesdf.kernels.meetings import find_meetings  # Numba loads only when it is used
+    from splinesdf.contours.kernels.meetings import (
+        find_meetings,  # Numba loads only when it is used
+    )
 
     order = np.argsort(arcs[:, :, 0].min(axis=1))
     room = 64

@@ -10,12 +10,12 @@ import math
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import ROUND, STRAIGHT
-from splinesdf.contour import Contour
-from splinesdf.curves.geometry import off_chord, points_at
-from splinesdf.curves.shape import Shape
+from splinesdf.arclets.points import off_chord, points_at
+from splinesdf.arclets.tables import ROUND, STRAIGHT
+from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.shapes.shape import Shape
 
 # What is farther than so many times the size is far: parallels there lie within rounding of one
 # another. Smaller: offsets lose their exact corners; larger: work that ends in nothing.

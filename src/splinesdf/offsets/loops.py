@@ -10,11 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf.curves.geometry import angles
-from splinesdf.curves.joints import CUSP, cycles
-from splinesdf.curves.shape import Shape
-from splinesdf.distance import signed_distance
+from splinesdf.arclets.joints import CUSP, cycles
+from splinesdf.arclets.points import angles
+from splinesdf.distance.exact import signed_distance
+from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.offsets.trimmed import (
     SMOOTH,
     Stretches,
@@ -23,6 +22,7 @@ from splinesdf.offsets.trimmed import (
     parallels,
     smooth_turn,
 )
+from splinesdf.shapes.shape import Shape
 
 # Steps of Newton's method from where trimming left two stretches to where they cross: one that goes
 # too far, as where they nearly touch, is halved. Fewer: such corners stay where trimming left them.

@@ -10,12 +10,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._tables import FREE, ROUND, STRAIGHT, Runs
-from splinesdf.curves.geometry import angles, off_chord
-from splinesdf.curves.shape import Shape
+from splinesdf.arclets.points import angles, off_chord
+from splinesdf.arclets.tables import FREE, ROUND, STRAIGHT
+from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.offsets.loops import Loops
+from splinesdf.offsets.tables import Runs
 from splinesdf.offsets.trimmed import SMOOTH, parallels
+from splinesdf.shapes.shape import Shape
 
 # A run is one line or one circle if it is no farther off anywhere, as a share of the tolerance or
 # of the largest coordinate, for rounding. Larger: what is exact is off by as much; smaller: chains

@@ -1,4 +1,4 @@
-"""What is left of the parallel curves at a distance, see `splinesdf.kernels.trim`."""
+"""What is left of the parallel curves at a distance, see `splinesdf.offsets.kernels.trim`."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf._arrays import Floats, Ints
-from splinesdf._tables import Joints, Trimming
-from splinesdf.curves.joints import CUSP
-from splinesdf.curves.shape import Shape
+from splinesdf.arclets.joints import CUSP
+from splinesdf.arclets.tables import Joints
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.offsets.tables import Trimming
+from splinesdf.shapes.shape import Shape
 
 # Rounding in a distance, as a multiple of the largest number around: what is not farther than the
 # distance by more counts as nearer, so that walls just twice the distance apart leave nothing
@@ -54,8 +55,8 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
     InputError
         If that takes too long.
     """
-    from splinesdf.kernels.own_chains import own_chains  # Numba loads only when it is used
-    from splinesdf.kernels.trim import MOST_LOOKS, trim
+    from splinesdf.offsets.kernels.safe_chains import own_chains  # Numba loads only when it is used
+    from splinesdf.offsets.kernels.trim import MOST_LOOKS, trim
 
     boundary, joints = shape.boundary, joints_at(shape, distance)
     request = trimming(shape, distance, tolerance, smooth)
@@ -95,7 +96,9 @@ def loop_sizes(shape: Shape, distance: float) -> Floats:
 
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
     """Point, tangent of the shape, speed and curvature of parallels, (n, 6)."""
-    from splinesdf.kernels.parallels import parallel_points  # Numba loads only when it is used
+    from splinesdf.offsets.kernels.parallels import (
+        parallel_points,  # Numba loads only when it is used
+    )
 
     rows = np.empty((len(at), 6))
     parallel_points(joints_at(shape, distance), elements, np.ascontiguousarray(at), distance, rows)

@@ -20,10 +20,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from splinesdf._arrays import Bools, Floats, Ints
-from splinesdf._tables import Nodes
+from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.meshes.mesh import Box
 from splinesdf.meshes.quadtree import Quadtree
+from splinesdf.spaces.tables import Nodes
 
 # (level, cells (n, 2)) -> the functional of that level for these cells, (n,)
 Functional = Callable[[int, Ints], Floats]
@@ -106,7 +106,7 @@ def refined(nodes: Nodes, bad: Ints, quarters: Bools) -> Nodes:
 
 def _split(nodes: Nodes, targets: Ints) -> Nodes:
     """The tree in which cells (k, 3), each a level and its place there, are split."""
-    from splinesdf.kernels.hierarchy import mark  # Numba loads only when it is used
+    from splinesdf.spaces.kernels.hierarchical import mark  # Numba loads only when it is used
 
     targets = np.ascontiguousarray(targets)
     again = True
@@ -118,7 +118,7 @@ def _split(nodes: Nodes, targets: Ints) -> Nodes:
 
 
 def _linked(shape: Ints, level: Ints, index: Ints, child: Ints) -> Nodes:
-    from splinesdf.kernels.hierarchy import link
+    from splinesdf.spaces.kernels.hierarchical import link
 
     near = np.empty((len(level), 9), dtype=np.int64)
     nodes = Nodes(shape, level, np.ascontiguousarray(index), child, near)
@@ -132,7 +132,7 @@ def _coarse_first(nodes: Nodes) -> Ints:
 
 def owned(nodes: Nodes) -> Bools:
     """Which nodes have a coefficient of their own."""
-    from splinesdf.kernels.hierarchy import owned as fill
+    from splinesdf.spaces.kernels.hierarchical import owned as fill
 
     own = np.empty(len(nodes.level), dtype=np.bool_)
     fill(nodes, own)
@@ -146,7 +146,7 @@ def leaves(nodes: Nodes) -> Ints:
 
 def ordinates(nodes: Nodes, own: Bools, values: Floats, cells: Ints) -> Floats:
     """Ordinates (k, 8) of cells from the own coefficients of nodes."""
-    from splinesdf.kernels.hierarchy import coefficients, ordinates
+    from splinesdf.spaces.kernels.hierarchical import coefficients, ordinates
 
     every = np.empty(len(values))
     coefficients(nodes, _coarse_first(nodes), own, values, every)

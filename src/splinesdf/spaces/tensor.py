@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from splinesdf._arrays import Floats, whole
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats, whole
 from splinesdf.meshes.grid import Grid
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from splinesdf.curves.shape import Shape
 from splinesdf.io.readers.formulas import formula_shape
 from splinesdf.io.readers.points import points_shape
 from splinesdf.io.readers.svg import svg_shape
+from splinesdf.shapes.shape import Shape
 
 Reader = Callable[[str, str, str | None, bool], Shape]
 

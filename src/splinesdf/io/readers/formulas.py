@@ -9,11 +9,11 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from splinesdf._arrays import Floats
-from splinesdf.curves.formula import parse_curve
-from splinesdf.curves.interpolate import compile_curve
-from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
+from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.sources.compiled import compile_curve
+from splinesdf.shapes.sources.formula import parse_curve
 
 _CURVE = ("x", "y", "t")
 _WHOLE = ("fill", "name")

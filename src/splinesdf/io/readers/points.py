@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from splinesdf._arrays import Floats
-from splinesdf.curves.interpolate import polygon
-from splinesdf.curves.shape import Shape
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
+from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.sources.compiled import polygon
 
 
 def points_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:

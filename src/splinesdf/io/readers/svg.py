@@ -18,15 +18,15 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from splinesdf._arrays import Floats
-from splinesdf.curves.interpolate import compile_arc
-from splinesdf.curves.repeats import drawn_once, first_of_each, repeats_note
-from splinesdf.curves.shape import Shape
-from splinesdf.curves.svg_path import closing_piece, parse_numbers, parse_path
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
 from splinesdf.io.readers.svg_units import unit_note
+from splinesdf.shapes.repeats import drawn_once, first_of_each, repeats_note
+from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.sources.compiled import compile_arc
+from splinesdf.shapes.sources.svg_path import closing_piece, parse_numbers, parse_path
 
 _NAMESPACE = "{http://www.w3.org/2000/svg}"
 # Entities can be made to expand without end, and a drawing needs none.

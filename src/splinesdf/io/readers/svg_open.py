@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from splinesdf._arrays import Floats
-from splinesdf.curves.joining import are_open, joined
+from splinesdf.ground.arrays import Floats
+from splinesdf.shapes.joining import are_open, joined
 
 Loops = list[list[Floats]]
 

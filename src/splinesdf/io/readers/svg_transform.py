@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf._arrays import Floats
-from splinesdf.curves.svg_path import parse_numbers
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
+from splinesdf.shapes.sources.svg_path import parse_numbers
 
 _TRANSFORM = re.compile(r"[\s,]*([A-Za-z]+)\s*\(([^()]*)\)")
 

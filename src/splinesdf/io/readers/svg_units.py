@@ -6,7 +6,7 @@ import math
 import re
 from xml.etree import ElementTree
 
-from splinesdf.curves.svg_path import parse_numbers
+from splinesdf.shapes.sources.svg_path import parse_numbers
 
 # Millimeters, by the CSS definitions: a px is 1/96 inch, a point 1/72, a pica 12 points.
 _INCH = 25.4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from splinesdf.contour import Contour
+from splinesdf.contours.contour import Contour
 from splinesdf.io.writers.dxf import dxf_text
 from splinesdf.io.writers.gcode import gcode_text
 from splinesdf.io.writers.options import GCODE, Options

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from splinesdf.biarcs import arc_elements
-from splinesdf.conics import Element, Kind, elements, unfolded
-from splinesdf.contour import Contour, box, upright
+from splinesdf.contours.biarcs import arc_elements
+from splinesdf.contours.conics import Element, Kind, elements, unfolded
+from splinesdf.contours.contour import Contour, box, upright
 from splinesdf.errors import MissingExtraError
 from splinesdf.io.writers.options import Options
 

@@ -19,12 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from splinesdf._arrays import Bools
-from splinesdf.biarcs import arc_elements
-from splinesdf.conics import Element, Kind
-from splinesdf.contour import Contour, upright
+from splinesdf.contours.biarcs import arc_elements
+from splinesdf.contours.conics import Element, Kind
+from splinesdf.contours.contour import Contour, upright
+from splinesdf.contours.nesting import smallest_around
+from splinesdf.ground.arrays import Bools
 from splinesdf.io.writers.options import Milling, Options
-from splinesdf.nesting import smallest_around
 
 # The last digit is a hundredth to a thousandth of the tolerance, and never coarser than this many
 # decimals: controls refuse arcs whose two radii differ by 0.005 mm or 0.0005 inch.

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from splinesdf._arrays import as_floats, finite, positive, shown
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import as_floats, finite, positive, shown
 
 UNITS = ("mm", "inch")
 DIRECTIONS = ("climb", "conventional")

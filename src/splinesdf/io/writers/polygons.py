@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from splinesdf._arrays import Floats
-from splinesdf.contour import Contour, halve
+from splinesdf.contours.contour import Contour, halve
+from splinesdf.ground.arrays import Floats
 from splinesdf.io.writers.options import Options
 
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from splinesdf._arrays import Floats
-from splinesdf.biarcs import arc_elements
-from splinesdf.conics import Element, Kind, elements, unfolded
-from splinesdf.contour import Contour, box, evaluate, halve, mirrored
+from splinesdf.contours.biarcs import arc_elements
+from splinesdf.contours.conics import Element, Kind, elements, unfolded
+from splinesdf.contours.contour import Contour, box, evaluate, halve, mirrored
+from splinesdf.ground.arrays import Floats
 from splinesdf.io.writers.options import Options
 
 # No circular arc sweeps more (radians): the center of a half turn is the root of a difference that

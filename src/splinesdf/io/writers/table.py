@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from splinesdf.contour import Contour
+from splinesdf.contours.contour import Contour
 from splinesdf.io.writers.options import Options
 
 

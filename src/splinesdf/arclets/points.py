@@ -1,0 +1,85 @@
+"""Points, directions and bends of arclets, for many parameters at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from splinesdf.arclets.tables import Arclets
+from splinesdf.ground.arrays import Floats, Ints
+
+
+def points_at(arclets: Arclets, arclet: Ints, t: Floats) -> Floats:
+    """Points of arclets (n,) at parameters (n,), relative to the origin; ends to the last bit."""
+    result = np.zeros((len(arclet), 2))
+    for k in range(arclets.power.shape[1] - 1, 0, -1):
+        result = (result + arclets.power[arclet, k]) * t[:, None]
+    result += arclets.start[arclet]
+    return np.where((t == 1.0)[:, None], arclets.end[arclet], result)
+
+
+def derivatives_at(arclets: Arclets, arclet: Ints, t: Floats) -> tuple[Floats, Floats]:
+    """First and second derivatives of arclets (n,) at parameters (n,), each of shape (n, 2)."""
+    first, second = np.zeros((len(arclet), 2)), np.zeros((len(arclet), 2))
+    for k in range(arclets.power.shape[1] - 1, 0, -1):
+        coefficient = arclets.power[arclet, k]
+        second = second * t[:, None] + k * (k - 1) * coefficient if k > 1 else second
+        first = first * t[:, None] + k * coefficient
+    return first, second
+
+
+def tangents_at(arclets: Arclets, arclet: Ints, t: Floats) -> Floats:
+    """First derivatives, or the chord where the curve stands still for a moment, as in a cusp."""
+    first, _ = derivatives_at(arclets, arclet, t)
+    still = ~np.any(first != 0.0, axis=1)
+    return np.where(still[:, None], (arclets.end - arclets.start)[arclet], first)
+
+
+def end_tangents(arclets: Arclets) -> tuple[Floats, Floats]:
+    """Tangents at the start and at the end of every arclet."""
+    every = np.arange(len(arclets.start))
+    at_start = tangents_at(arclets, every, np.zeros(len(every)))
+    return at_start, tangents_at(arclets, every, np.ones(len(every)))
+
+
+def turns(arclets: Arclets) -> Floats:
+    """By what angle the curve turns to the left where each arclet ends; 0 if it leads nowhere."""
+    leaving, arriving = end_tangents(arclets)
+    turn = angles(arriving, leaving[arclets.following])
+    return np.where(arclets.following >= 0, turn, 0.0)
+
+
+def turns_at_ends(arclets: Arclets) -> Floats:
+    """By what angle the curve turns to the left at the start and the end of each arclet: (n, 2)."""
+    turn = turns(arclets)
+    previous = np.full(len(turn), -1)
+    previous[arclets.following] = np.arange(len(turn))
+    return np.column_stack([turn[previous], turn])
+
+
+def angles(first: Floats, second: Floats) -> Floats:
+    """How far to turn left from one direction (n, 2) to the other, in (-pi, pi]: (n,)."""
+    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    return np.asarray(np.arctan2(cross, np.sum(first * second, axis=1)))
+
+
+def off_chord(points: Floats) -> Floats:
+    """How far the middle ones of points (n, k, 2) are off the lines through the others: (n,)."""
+    chord, apart = points[:, -1] - points[:, 0], points[:, 1:-1] - points[:, :1]
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    cross = np.abs(chord[:, None, 0] * apart[..., 1] - chord[:, None, 1] * apart[..., 0])
+    far = np.hypot(apart[..., 0], apart[..., 1]).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = cross.max(axis=1) / length
+    return np.asarray(np.where(length > 0.0, off, far))
+
+
+def bezier_points(control: Floats, t: Floats) -> tuple[Floats, Floats]:
+    """Points and derivatives of pieces (..., degree + 1, 2) at parameters (...)."""
+    grid = np.broadcast_shapes(control.shape[:-2], t.shape)
+    points = np.broadcast_to(control, (*grid, *control.shape[-2:]))
+    t = t[..., None, None]
+    degree = points.shape[-2] - 1
+    while points.shape[-2] > 2:
+        points = (1.0 - t) * points[..., :-1, :] + t * points[..., 1:, :]
+    start, end = points[..., 0, :], points[..., 1, :]
+    return start + t[..., 0] * (end - start), degree * (end - start)

@@ -1,0 +1,104 @@
+"""`splinesdf fit`: a fit within a tolerance, saved, drawn and reported."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import click
+
+import splinesdf as ss
+from splinesdf.cli import report
+from splinesdf.cli.report import working
+from splinesdf.cli.shapes import (
+    check_outputs,
+    read_shape,
+    shape_options,
+    tolerance_of,
+    tolerance_option,
+)
+from splinesdf.fits.fit import FitResult, fit_steps, require_reached
+
+
+@click.command()
+@shape_options
+@tolerance_option
+@click.option(
+    "--band",
+    "band",
+    type=float,
+    nargs=2,
+    multiple=True,
+    help="Keep the tolerance only where LO <= u <= HI; may be given again.",
+)
+@click.option(
+    "--space", default="hierarchical", help="hierarchical, tensor or uniform.", show_default=True
+)
+@click.option("--operator", help="S, W, V or P.  [default: S; P for bands; W on a tensor grid]")
+@click.option("--no-proof", is_flag=True, help="Sample what a proof takes a closer look for.")
+@click.option("--domain", type=float, nargs=4, help="XMIN YMIN XMAX YMAX.")
+@click.option("--max-cells", type=click.IntRange(min=1), help="Give up beyond so many cells.")
+@click.option("-o", "--output", help="Save the fit as .npz.")
+@click.option("--plot", "picture", help="Draw the fit as .png, .svg or .pdf.")
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+def fit(
+    shape: str,
+    fill: str | None,
+    close: bool,
+    tolerance: float | None,
+    output: str | None,
+    picture: str | None,
+    as_json: bool,
+    max_cells: int | None,
+    no_proof: bool,
+    **options: Any,
+) -> None:
+    """Fit a signed distance function to SHAPE within a tolerance."""
+    source = read_shape(shape, fill, close)
+    check_outputs(shape, output, picture)
+    if output is not None and Path(output).suffix.lower() != ".npz":
+        raise ss.InputError(f"expected a file name ending in .npz for a fit, got {output!r}")
+    if picture is not None:
+        from splinesdf.plot import check_format as check_picture
+
+        check_picture(picture)
+    if max_cells is not None:
+        options["max_cells"] = max_cells
+    options |= {"band": options["band"] or None, "certify": not no_proof}
+    began = time.perf_counter()
+    result = fitted(source, tolerance_of(source, tolerance), **options)
+    seconds = time.perf_counter() - began
+    if output is not None:
+        result.spline.save(output)
+    if picture is not None:
+        draw(result, source, picture)
+    if as_json:
+        figures = report.fit_figures(result, source, seconds=seconds)
+        click.echo(json.dumps(figures, indent=2))
+    else:
+        report.print_fit(result, source, seconds)
+        report.print_written(output, picture)
+
+
+def fitted(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:
+    """Fit a shape, and say how far it is."""
+    with working(f"fitting {shape.name} (the first run compiles)") as say:
+        for result in fit_steps(shape, tolerance=tolerance, **options):
+            say(
+                f"fitting {shape.name}: {result.cells:,} cells, error {result.error:.2e}, "
+                f"tolerance {tolerance:.2e}"
+            )
+    return require_reached(result)
+
+
+def draw(
+    result: FitResult, shape: ss.Shape, path: str, contours: Iterable[ss.Contour] = ()
+) -> None:
+    """Draw a fit, with offsets if there are any, to a file."""
+    from splinesdf.plot import overview, save_figure
+
+    with working("drawing"):
+        save_figure(overview(result, shape, contours), path)

@@ -1,0 +1,51 @@
+"""`splinesdf info`: what is in a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import splinesdf as ss
+from splinesdf.cli import report
+from splinesdf.cli.shapes import (
+    read_shape,
+)
+from splinesdf.meshes import Quadtree
+
+
+@click.command()
+@click.argument("file")
+@click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule.")
+@click.option("--close", is_flag=True, help="Close open contours by a straight piece.")
+def info(file: str, fill: str | None, close: bool) -> None:
+    """What is in FILE: a saved fit (.npz) or a shape."""
+    if Path(file).suffix.lower() == ".npz":
+        spline = ss.load(file)
+        mesh = spline.mesh
+        kind = f"quadtree of {mesh.depth + 1} levels" if isinstance(mesh, Quadtree) else "grid"
+        report.print_pairs(
+            fit=spline.name or file,
+            cells=f"{len(spline.ordinates):,} ({kind})",
+            domain=report.box_text(spline.domain),
+            y="downward" if spline.y_down else "upward",
+            size=_size_of(file),
+            shape="not in the file" if spline.shape is None else report.describe(spline.shape),
+            **report.provenance(spline.made),
+        )
+    else:
+        shape = read_shape(file, fill, close)
+        report.print_pairs(
+            shape=shape.name,
+            loops=f"{shape.loop_count} ({shape.fill})",
+            pieces=f"{shape.piece_count} ({report.pieces_by_degree(shape)})",
+            box=report.box_text(shape.box),
+            y="downward" if shape.y_down else "upward",
+        )
+
+
+def _size_of(file: str) -> str:
+    try:
+        return f"{Path(file).stat().st_size:,} bytes"
+    except OSError:  # it was there when it was read
+        return "no longer there"

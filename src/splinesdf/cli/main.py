@@ -1,0 +1,67 @@
+"""The command line: it parses, calls and prints; nothing is computed here."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import splinesdf as ss
+from splinesdf.cli import report
+
+try:
+    import click
+except ImportError:
+    # This is the whole program's first import of it, so there is nothing else to be saved.
+    print('splinesdf: the command line needs: python -m pip install "splinesdf[cli]"')
+    raise SystemExit(2) from None
+
+from splinesdf.cli.demo import demo
+from splinesdf.cli.fit import fit
+from splinesdf.cli.info import info
+from splinesdf.cli.offset import offset
+from splinesdf.cli.paper import paper
+from splinesdf.cli.query import query
+
+
+def main() -> None:
+    """Run the command line; bad input is one line on stderr and exit status 2."""
+    report.write_on_any_terminal()
+    try:
+        status = commands.main(prog_name="splinesdf", standalone_mode=False)
+    except click.Abort:
+        click.echo("splinesdf: interrupted; nothing was written", err=True)
+        sys.exit(130)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message(), err=True)
+        sys.exit(2)
+    except click.ClickException as error:
+        _fail(error.format_message())
+    except ss.SplineSDFError as error:
+        _fail(str(error))
+    except BrokenPipeError:
+        # Whoever read the output has enough of it ("| head"); so that the interpreter does not
+        # complain when it flushes what is left:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+    except MemoryError:
+        _fail("not enough memory: raise the tolerance, or ask for a band")
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def _fail(message: str) -> None:
+    click.echo("splinesdf: " + " ".join(message.split()), err=True)
+    sys.exit(2)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(ss.__version__, prog_name="splinesdf")
+def commands() -> None:
+    """Closed curves to a compact, smooth signed distance function, and to trimmed offsets.
+
+    SHAPE is a file (.svg, .json formulas, .csv or .dat points) or the name of a shape that comes
+    with the package: part, gamma1, gamma2, gamma3.
+    """
+
+
+for _command in (fit, offset, query, paper, info, demo):
+    commands.add_command(_command)

@@ -1,0 +1,213 @@
+"""`splinesdf offset`: trimmed offsets of a shape to a file, and the file measured again."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import click
+
+import splinesdf as ss
+from splinesdf.cli import report
+from splinesdf.cli.report import working
+from splinesdf.cli.shapes import (
+    check_outputs,
+    offset_tolerance_of,
+    offsets_of,
+    read_shape,
+    shape_options,
+    tolerance_option,
+)
+from splinesdf.distance.depth import deepest
+from splinesdf.io.enclosed import check_sides
+from splinesdf.io.output import check_format
+from splinesdf.io.remeasured import measure_file
+from splinesdf.io.writers.options import DIRECTIONS, UNITS
+from splinesdf.offsets.offset import least_tolerance
+
+# How much of the tolerance the offset gets; the file has the rest. DXF without --arcs is exact. In
+# SVG only hyperbolas are not, and cubics follow them with the sixth order. Biarcs, which are of
+# the third, and polylines, of the second, need the room more than the offset's conics, which are
+# of the fifth. More for those: more biarcs and vertices; less: conics that nobody sees.
+_EXACT, _MOSTLY, _LITTLE = 1.0, 0.875, 0.125
+_MILLING = ("feed", "safe_height", "depth", "start", "direction")
+
+
+@click.command()
+@shape_options
+@tolerance_option
+@click.option("--coarse", is_flag=True, help="Allow a tolerance above a quarter of the distance.")
+@click.option("-d", "--distance", "distances", type=float, multiple=True, help="> 0: outward.")
+@click.option("--step", type=float, help="Inward, < 0: at STEP, 2 STEP, ... until nothing is left.")
+@click.option("-o", "--output", required=True, help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv")
+@click.option("--arcs", is_flag=True, help="DXF, SVG: only lines and circular arcs.")
+@click.option(
+    "--units", type=click.Choice(UNITS), help="DXF, G-code: what the numbers are. [G-code: mm]"
+)
+@click.option("--feed", type=float, help="G-code: speed of cutting, in units a minute.")
+@click.option("--safe-height", type=float, help="G-code: Z between contours.  [default: 5]")
+@click.option("--depth", type=float, help="G-code: how deep to cut below Z = 0.  [default: 0]")
+@click.option("--start", type=float, nargs=2, help="G-code: X Y, begin near here.  [default: 0 0]")
+@click.option(
+    "--direction",
+    type=click.Choice(DIRECTIONS),
+    help="G-code: for a spindle that turns clockwise.  [default: climb]",
+)
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Read the file back, measure it and what it encloses: status 1 if off.",
+)
+def offset(
+    shape: str,
+    fill: str | None,
+    close: bool,
+    tolerance: float | None,
+    coarse: bool,
+    distances: tuple[float, ...],
+    step: float | None,
+    output: str,
+    arcs: bool,
+    units: str | None,
+    check: bool,
+    **milling: Any,
+) -> None:
+    """Write the trimmed offsets of SHAPE, at distances or in steps.
+
+    What is written is within the tolerance of the distances, whatever the format. Lengths are in
+    the shape's unit and never converted. DXF and G-code have y pointing up: a shape from an SVG
+    file is mirrored.
+    """
+    if bool(distances) == (step is not None):
+        got = "both" if distances else "neither"
+        raise ss.InputError(f"expected either --distance (-d) or --step, got {got}: give one")
+    source = read_shape(shape, fill, close)
+    given = {name: value for name, value in milling.items() if value is not None}
+    options: dict[str, Any] = {
+        "arcs": arcs,
+        "units": units,
+        "milling": ss.Milling(**given) if given else None,
+    }
+    suffix = check_format(output, **options)
+    check_outputs(shape, output)
+    asked = distances if step is None else (step,)
+    tolerance = offset_tolerance_of(source, asked, tolerance, coarse=coarse)
+    share = _share(suffix, arcs)
+    farthest = max(map(abs, distances), default=0.0)
+    if tolerance < (least := least_tolerance(source, farthest) / share):
+        raise ss.InputError(
+            f"expected a tolerance of at least {least:.2g} for {suffix}, above the rounding of the "
+            f"coordinates, got {tolerance:.4g}: raise it, or move the shape nearer to the origin"
+        )
+    contours = _contours(source, distances, step, tolerance, share)
+    rest = (1.0 - share) * tolerance
+    ss.write(output, contours, tolerance=rest if rest > 0.0 else None, **options)
+    distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
+    off = report.print_offsets(source, contours, distances, tolerance)
+    report.print_written(output)
+    passed = _keeps(off, tolerance)
+    if check:
+        # In steps there is to be nothing left at the next one.
+        ended = () if step is None else ((len(distances) + 1) * step,)
+        passed &= _check(output, source, contours, (*distances, *ended), tolerance)
+    if not passed:
+        raise click.exceptions.Exit(1)
+
+
+def _share(suffix: str, arcs: bool) -> float:
+    """The offset's share of the tolerance."""
+    if arcs or suffix not in (".dxf", ".svg"):
+        return _LITTLE
+    return _EXACT if suffix == ".dxf" else _MOSTLY
+
+
+def _contours(
+    source: ss.Shape,
+    distances: tuple[float, ...],
+    step: float | None,
+    tolerance: float,
+    share: float,
+) -> list[ss.Contour]:
+    """The offsets asked for, or an error if there is none."""
+    try:
+        if step is None:
+            contours = offsets_of(source, distances, share * tolerance)
+        else:
+            with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
+                contours = ss.offset(source, step=step, tolerance=share * tolerance, coarse=True)
+    except ss.SplineSDFError as error:
+        if share < 1.0 and "tolerance" in str(error):
+            # What it names is not what was given.
+            told = f"{error} (of the tolerance {tolerance:.4g}, {share:g} is for the offset itself)"
+            error.args = (told, *error.args[1:])
+        raise
+    fitted = sorted({contour.distance for contour in contours if contour.fitted})
+    if fitted:
+        click.echo(
+            f"note: at {', '.join(f'{d:g}' for d in fitted)} the offset is the level set of a fit, "
+            f"within the tolerance, of many arcs",
+            err=True,
+        )
+    if not contours:
+        wanted = distances if step is None else (step,)
+        listed = ", ".join(f"{d:g}" for d in wanted)
+        low, high = deepest(source, -max(wanted))
+        if -max(wanted) > high:
+            raise ss.InputError(
+                f"nothing to write: no point of the plane is at {listed}, the deepest is at "
+                f"about {-low:.2g}: ask for a distance nearer to the boundary"
+            )
+        _nothing(source, wanted, tolerance)
+        raise ss.InputError(
+            f"nothing to write: at {listed} is nothing wider than the tolerance {tolerance:.4g}: "
+            "lower it"
+        )
+    return contours
+
+
+def _nothing(source: ss.Shape, distances: tuple[float, ...], tolerance: float) -> None:
+    """Nothing is left only if no point is nearer than an offset would enclose."""
+    for distance in distances:
+        sides = check_sides(source, distance, [], tolerance)
+        if sides.wrong:
+            _complain(report.wrong_sides(sides))
+            raise click.exceptions.Exit(1)
+
+
+def _keeps(off: float, tolerance: float) -> bool:
+    """Whether the contours themselves keep the tolerance, as far as they are measured."""
+    if not off <= tolerance:
+        _complain(
+            f"expected a deviation of at most {tolerance:.4g}, got {off:.4g}: do not use the file; "
+            "try another tolerance, or move the shape nearer to the origin"
+        )
+    return off <= tolerance
+
+
+def _check(
+    output: str,
+    source: ss.Shape,
+    contours: list[ss.Contour],
+    distances: tuple[float, ...],
+    tolerance: float,
+) -> bool:
+    """Measure the file: whether it is within the tolerance, all there, and nothing twice."""
+    wanted = Counter(float(contour.distance) for contour in contours)
+    with working(f"reading {Path(output).name} back"):
+        worst = measure_file(output, source, sorted({*wanted, *distances}), tolerance)
+    report.print_check(output, worst, tolerance)
+    if worst.curves != wanted:
+        _complain(f"expected curves at {dict(wanted)}, read {worst.curves}")
+    if worst.gap > tolerance:
+        _complain(f"expected closed curves, got one whose ends are {worst.gap:.4g} apart")
+    if worst.points:
+        _complain(f"expected curves with an extent, got {worst.points} that are points")
+    for sides in worst.sides:
+        if sides.wrong:
+            _complain(report.wrong_sides(sides))
+    return worst.curves == wanted and worst.keeps(tolerance)
+
+
+def _complain(text: str) -> None:
+    click.echo(f"splinesdf: {text}", err=True)

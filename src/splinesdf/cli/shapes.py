@@ -1,0 +1,110 @@
+"""What the commands share: a shape from the command line, its tolerance, files to write."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import click
+
+import splinesdf as ss
+from splinesdf.cli.report import working
+from splinesdf.ground.arrays import positive
+from splinesdf.ground.atomic import check_target
+from splinesdf.offsets.offset import offset_tolerance
+
+_BUILT_IN = {"part": "part.svg"} | {f"gamma{i}": f"gamma{i}.json" for i in (1, 2, 3)}
+# The tolerance, as a share of the shape's larger side, if none is given.
+_SHARE = 1e-3
+
+Command = Callable[..., None]
+
+
+def shape_options(command: Command) -> Command:
+    """The shape and how it is read."""
+    for option in (
+        click.option(
+            "--close", is_flag=True, help="Join open paths end to end, close the rest straight."
+        ),
+        click.option(
+            "--fill",
+            type=click.Choice(["nonzero", "evenodd"]),
+            help="The fill rule; then what is drawn twice counts twice.",
+        ),
+        click.argument("shape"),
+    ):
+        command = option(command)
+    return command
+
+
+def tolerance_option(command: Command) -> Command:
+    """The tolerance, which has a default here."""
+    return click.option(
+        "--tolerance",
+        type=float,
+        help="Largest error, in the shape's unit. Default: 1e-3 of its larger side; of an offset, "
+        "1e-2 of the smallest distance at most.",
+    )(command)
+
+
+def read_shape(text: str, fill: str | None, close: bool) -> ss.Shape:
+    """A shape from a file, or one that comes with the package; its notes go to stderr."""
+    with ExitStack() as stack:
+        path: Any = text
+        if text in _BUILT_IN and not Path(text).exists():
+            data = resources.files("splinesdf") / "data" / _BUILT_IN[text]
+            path = stack.enter_context(resources.as_file(data))
+        shape = ss.read(path, fill=fill, close=close)
+    for note in shape.notes:
+        click.echo(f"note: {note}", err=True)
+    return shape
+
+
+def check_outputs(source: str, *outputs: str | None) -> None:
+    """Refuse, before the work, files that cannot be written or that are its source."""
+    for output in outputs:
+        if output is None:
+            continue
+        check_target(output)
+        try:
+            lost = Path(output).samefile(source)
+        except (OSError, ValueError):  # one of them does not exist
+            lost = False
+        if lost:
+            raise ss.InputError(f"{output!r} is the input, it would be lost: name another file")
+
+
+def tolerance_of(shape: ss.Shape, tolerance: float | None) -> float:
+    """The tolerance, or the default, which is then told."""
+    if tolerance is not None:
+        return positive(tolerance, "tolerance")
+    tolerance = _SHARE * shape.size
+    click.echo(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given", err=True)
+    return tolerance
+
+
+def offset_tolerance_of(
+    shape: ss.Shape, distances: Iterable[float], tolerance: float | None, *, coarse: bool
+) -> float:
+    """The tolerance of offsets, or the default, which is then told."""
+    found = offset_tolerance(shape, distances, tolerance, coarse=coarse)
+    if tolerance is None:
+        click.echo(
+            f"tolerance {found:.4g}: 1e-3 of the larger side, at most 1e-2 of the smallest "
+            f"distance, as none was given",
+            err=True,
+        )
+    return found
+
+
+def offsets_of(shape: ss.Shape, distances: Iterable[float], tolerance: float) -> list[ss.Contour]:
+    """The offsets at distances, one after the other."""
+    contours = []
+    with working("offsetting (the first run compiles)") as say:
+        for distance in distances:
+            say(f"offsetting {shape.name} by {distance:g}")
+            contours += ss.offset(shape, distance, tolerance=tolerance, coarse=True)
+    return contours

@@ -1,0 +1,190 @@
+"""Conic arcs that meet elsewhere than at an end that they share.
+
+An arc lies in the triangle of its control points. Two triangles apart: the arcs do not meet.
+Otherwise the larger one is halved, down to a size below which they count as meeting.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.ground.jit import kernel, uncounted
+
+# Halvings of one arc: enough from any arc to rounding. The stack holds one pair more for each.
+_DEPTH = 128
+
+
+@kernel
+def find_meetings(
+    arcs: Floats,
+    weights: Floats,
+    following: Ints,
+    order: Ints,
+    apart: tuple[float, float],
+    pairs: Ints,
+) -> int:
+    """Fill the pairs of arcs that come nearer to each other than about a distance.
+
+    Parameters
+    ----------
+    arcs : ndarray, shape (n, 3, 2)
+    weights : ndarray, shape (n,)
+    following : ndarray, shape (n,)
+        The arc that starts where each one ends.
+    order : ndarray, shape (n,)
+        The arcs in the order of the smallest x of their control points.
+    apart : tuple of float
+        Parts of arcs smaller than the first are not halved any more; parts that are both nearer
+        than the second to an end that the arcs share are passed over.
+    pairs : ndarray, shape (room, 2)
+        Filled.
+
+    Returns
+    -------
+    int
+        How many there are, even if there is no room for all.
+    """
+    count = arcs.shape[0]
+    boxes = np.empty((count, 4))
+    for i in range(count):
+        boxes[i, 0] = min(arcs[i, 0, 0], arcs[i, 1, 0], arcs[i, 2, 0])
+        boxes[i, 1] = min(arcs[i, 0, 1], arcs[i, 1, 1], arcs[i, 2, 1])
+        boxes[i, 2] = max(arcs[i, 0, 0], arcs[i, 1, 0], arcs[i, 2, 0])
+        boxes[i, 3] = max(arcs[i, 0, 1], arcs[i, 1, 1], arcs[i, 2, 1])
+    stack = np.empty((_DEPTH, 2, 7))
+    total = 0
+    for place in range(count):
+        i = order[place]
+        for k in range(place + 1, count):
+            j = order[k]
+            if boxes[j, 0] > boxes[i, 2]:
+                break
+            if boxes[j, 1] > boxes[i, 3] or boxes[i, 1] > boxes[j, 3]:
+                continue
+            if _meet(arcs, weights, (i, j), following, apart, stack):
+                if total < pairs.shape[0]:
+                    pairs[total, 0], pairs[total, 1] = i, j
+                total += 1
+    return total
+
+
+@kernel
+def _meet(
+    arcs: Floats,
+    weights: Floats,
+    pair: tuple[int, int],
+    following: Ints,
+    apart: tuple[float, float],
+    stack: Floats,
+) -> bool:
+    i, j = pair
+    # Ends that both share: at most two, when they are all of a loop.
+    shared = np.empty((2, 2))
+    count = 0
+    if following[i] == j:
+        shared[count, 0], shared[count, 1] = arcs[i, 2, 0], arcs[i, 2, 1]
+        count += 1
+    if following[j] == i:
+        shared[count, 0], shared[count, 1] = arcs[j, 2, 0], arcs[j, 2, 1]
+        count += 1
+    if count == 1 and _leave_apart(arcs, i, j, following):
+        return False
+    for side, one in ((0, i), (1, j)):
+        for k in range(3):
+            stack[0, side, 2 * k], stack[0, side, 2 * k + 1] = arcs[one, k, 0], arcs[one, k, 1]
+        stack[0, side, 6] = weights[one]
+    size = 1
+    while size > 0:
+        size -= 1
+        a, b = stack[size, 0], stack[size, 1]
+        if _separate(a, b) or _separate(b, a):
+            continue
+        extent_a, extent_b = _extent(a), _extent(b)
+        passed = False
+        for k in range(count):
+            x, y = shared[k, 0], shared[k, 1]
+            if _farthest(a, x, y) < apart[1] and _farthest(b, x, y) < apart[1]:
+                passed = True
+        if passed:
+            continue
+        if max(extent_a, extent_b) < apart[0] or size + 2 > stack.shape[0]:
+            return True
+        which = 0 if extent_a >= extent_b else 1
+        # the pair as it was stays below its halves
+        other = stack[size, 1 - which].copy()
+        whole = stack[size, which].copy()
+        _halve(whole, stack[size, which], stack[size + 1, which])
+        stack[size + 1, 1 - which] = other
+        size += 2
+    return False
+
+
+@uncounted
+def _leave_apart(arcs: Floats, i: int, j: int, following: Ints) -> bool:
+    """Whether a line through the end that two arcs share has one on either side of it."""
+    first, second = (i, j) if following[i] == j else (j, i)
+    x, y = arcs[first, 2, 0], arcs[first, 2, 1]
+    ax, ay = x - arcs[first, 1, 0], y - arcs[first, 1, 1]
+    bx, by = arcs[second, 1, 0] - x, arcs[second, 1, 1] - y
+    a, b = math.hypot(ax, ay), math.hypot(bx, by)
+    # Across the line: halfway between both directions.
+    nx, ny = ax * b + bx * a, ay * b + by * a
+    for k in range(2):
+        if not nx * (arcs[first, k, 0] - x) + ny * (arcs[first, k, 1] - y) < 0.0:
+            return False
+        if not nx * (arcs[second, k + 1, 0] - x) + ny * (arcs[second, k + 1, 1] - y) > 0.0:
+            return False
+    return True
+
+
+@uncounted
+def _separate(a: Floats, b: Floats) -> bool:
+    """Whether a side of triangle a, or its chord's normal, has triangle b beyond it."""
+    for k in range(3):
+        x, y = a[2 * k], a[2 * k + 1]
+        m = (k + 1) % 3
+        dx, dy = a[2 * m] - x, a[2 * m + 1] - y
+        for turned in range(2):
+            nx, ny = (-dy, dx) if turned == 0 else (dx, dy)
+            low_a = high_a = 0.0
+            low_b, high_b = np.inf, -np.inf
+            for v in range(3):
+                at = nx * (a[2 * v] - x) + ny * (a[2 * v + 1] - y)
+                low_a, high_a = min(low_a, at), max(high_a, at)
+                at = nx * (b[2 * v] - x) + ny * (b[2 * v + 1] - y)
+                low_b, high_b = min(low_b, at), max(high_b, at)
+            if low_b > high_a or high_b < low_a:
+                return True
+    return False
+
+
+@uncounted
+def _extent(a: Floats) -> float:
+    """The longest side of a triangle."""
+    sides = math.hypot(a[2] - a[0], a[3] - a[1]), math.hypot(a[4] - a[2], a[5] - a[3])
+    return float(max(sides[0], sides[1], math.hypot(a[4] - a[0], a[5] - a[1])))
+
+
+@uncounted
+def _farthest(a: Floats, x: float, y: float) -> float:
+    """How far a triangle reaches from a point."""
+    result = 0.0
+    for k in range(3):
+        result = max(result, math.hypot(a[2 * k] - x, a[2 * k + 1] - y))
+    return result
+
+
+@uncounted
+def _halve(whole: Floats, first: Floats, second: Floats) -> None:
+    """Fill both halves of an arc, cut at its shoulder."""
+    w = whole[6]
+    for k in range(2):
+        into = (whole[k] + w * whole[2 + k]) / (1.0 + w)
+        out_of = (whole[4 + k] + w * whole[2 + k]) / (1.0 + w)
+        middle = 0.5 * (into + out_of)
+        first[k], first[2 + k], first[4 + k] = whole[k], into, middle
+        second[k], second[2 + k], second[4 + k] = middle, out_of, whole[4 + k]
+    first[6] = second[6] = math.sqrt(0.5 * (1.0 + w))

@@ -1,0 +1,116 @@
+"""Which contour directly encloses which: crossings of rays with conic arcs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from splinesdf.contours.contour import Contour
+from splinesdf.ground.arrays import Bools, Floats, Ints
+
+
+def nested(contours: Sequence[Contour]) -> list[Contour]:
+    """The contours, each with the one that directly encloses it as its ``parent``.
+
+    Parameters
+    ----------
+    contours : sequence of Contour
+        Of one level, so that no two cross. Open ones enclose nothing, but may be enclosed.
+
+    Returns
+    -------
+    list of Contour
+        In the same order.
+    """
+    count = len(contours)
+    if count < 2:
+        return [_inside(contour, None) for contour in contours]
+    low = np.array([contour.arcs.min(axis=(0, 1)) for contour in contours])
+    high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
+    first = np.array([contour.arcs[0, 0] for contour in contours])
+    encloses = np.zeros((count, count), dtype=np.bool_)
+    for i, contour in enumerate(contours):
+        if contour.closed:
+            may = np.flatnonzero(np.all((low[i] <= first) & (first <= high[i]), axis=1))
+            may = may[may != i]
+            if len(may):
+                encloses[i, may] = enclosed(contour, first[may])
+    # The depth grows by one from a contour to those directly inside it.
+    depth = encloses.sum(axis=0)
+    result: list[Contour | None] = [None] * count
+    for j in np.argsort(depth, kind="stable").tolist():
+        around = np.flatnonzero(encloses[:, j])
+        parent = result[int(around[np.argmax(depth[around])])] if len(around) else None
+        result[j] = _inside(contours[j], parent)
+    return [contour for contour in result if contour is not None]
+
+
+def smallest_around(contours: Sequence[Contour]) -> list[int]:
+    """Of each contour, the row of the smallest one that encloses where it starts, or -1.
+
+    Parameters
+    ----------
+    contours : sequence of Contour
+        Of any levels. Of two that cross, at most one counts as enclosed: the smaller one.
+    """
+    areas = np.array([abs(contour.area) if contour.closed else 0.0 for contour in contours])
+    low = np.array([contour.arcs.min(axis=(0, 1)) for contour in contours])
+    high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
+    result = [-1] * len(contours)
+    for j, contour in enumerate(contours):
+        start = contour.arcs[0, 0]
+        # Of equal ones, which are the same contour twice, neither is in the other.
+        may = np.all((low <= start) & (start <= high), axis=1) & (areas > areas[j])
+        rows = np.flatnonzero(may)
+        for i in rows[np.argsort(areas[rows], kind="stable")].tolist():
+            if enclosed(contours[i], start[None])[0]:
+                result[j] = i
+                break
+    return result
+
+
+def _inside(contour: Contour, parent: Contour | None) -> Contour:
+    return contour if contour.parent is parent else replace(contour, parent=parent)
+
+
+def enclosed(contour: Contour, points: Floats) -> Bools:
+    """Whether each point lies inside a closed contour: (n, 2) -> (n,).
+
+    The exact crossings of the ray to the right are counted. Which arcs cross follows from the
+    signs at their ends, which neighbors share to the bit, so that none is counted twice.
+    """
+    low, high = contour.arcs.min(axis=1), contour.arcs.max(axis=1)
+    right, below, above = high[:, 0], low[:, 1], high[:, 1]
+    # Of most arcs the control points show that the ray passes them by.
+    near = [np.flatnonzero((below <= y) & (y <= above) & (x <= right)) for x, y in points]
+    of_point, of_arc = np.repeat(np.arange(len(points)), [*map(len, near)]), np.concatenate(near)
+    arcs = contour.arcs[of_arc] - points[of_point, None]
+    crossings = _crossings_to_the_right(arcs, contour.weights[of_arc])
+    return np.asarray(np.bincount(of_point, crossings, len(points)) % 2 == 1)
+
+
+def _crossings_to_the_right(arcs: Floats, weights: Floats) -> Ints:
+    """How often each arc crosses the positive x axis: (n, 3, 2) -> (n,)."""
+    # The numerator of y in Bernstein form: its roots are where an arc crosses the axis.
+    p, q, r = arcs[:, 0, 1], weights * arcs[:, 1, 1], arcs[:, 2, 1]
+    differ = (p < 0.0) != (r < 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(np.maximum(q * q - p * r, 0.0))
+        # With both ends on one side there may be two crossings: a parabola through the axis.
+        dips = ~differ & (q * q > p * r) & (np.where(p < 0.0, -q, q) < 0.0)
+        # t / (1 - t) = s with p + 2 q s + r s² = 0, in forms that do not cancel.
+        big = -(q + np.where(q < 0.0, -root, root))
+        first, second = p / big, big / r
+        is_first = first >= 0.0
+        result = (dips | (differ & is_first)) & _right_of_zero(arcs, weights, first)
+        other = (dips | (differ & ~is_first)) & _right_of_zero(arcs, weights, second)
+    return np.asarray(result.astype(np.int64) + other)
+
+
+def _right_of_zero(arcs: Floats, weights: Floats, s: Floats) -> Bools:
+    """Whether points at t / (1 - t) = s have a positive x."""
+    x = arcs[:, 0, 0] + s * (2.0 * weights * arcs[:, 1, 0] + s * arcs[:, 2, 0])
+    # For s beyond all bounds that is the end of the arc.
+    return np.asarray(np.where(np.isfinite(x), x, arcs[:, 2, 0]) > 0.0)

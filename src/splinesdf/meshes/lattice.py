@@ -1,0 +1,35 @@
+"""Nodes of a grid, and what is known at them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats, whole
+
+# Nodes along a side of a grid. More: squared they have no place in any memory, and their count none
+# in an index; fewer: a long strip could not be asked for.
+_MOST_NODES = 10_000_000
+
+
+class DistanceGrid(NamedTuple):
+    """Signed distances at the nodes of a grid.
+
+    Attributes
+    ----------
+    x, y : ndarray, shapes (nx,), (ny,)
+    distance : ndarray, shape (ny, nx)
+        ``distance[j, i]`` is that of (x[i], y[j]).
+    """
+
+    x: Floats
+    y: Floats
+    distance: Floats
+
+
+def node_count(count: int, name: str) -> int:
+    """How many nodes a grid has along a side, from 2 on, or an `InputError`."""
+    number = whole(count, f"the number of nodes {name}", least=0, most=_MOST_NODES)
+    if number < 2:
+        raise InputError(f"expected at least 2 nodes each way, got {number} for {name}")
+    return number

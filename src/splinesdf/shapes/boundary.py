@@ -1,0 +1,203 @@
+"""The boundary of what a shape fills: where contours cross, touch or repeat, only what separates.
+
+arclets ──crossings──> parts ──joined between crossings──> chains ──a side of each is filled
+and the other is not──> kept, turned so that the inside is on the left
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from splinesdf.arclets.crossings import control_points, degrees
+from splinesdf.arclets.cutting import Arcs, Runs, assemble, ends, split
+from splinesdf.arclets.points import tangents_at
+from splinesdf.arclets.tables import Arclets
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.shapes.parts import MERGE, Parts, chain_ends, cut_at_crossings, groups, without_cuts
+from splinesdf.shapes.sides import bounding, look_at_sides
+
+# Nearer than this counts as touching, in units of the largest coordinate: a few times what
+# rounding and compiled pieces (4 ulp) can put between curves that are meant to coincide. Larger:
+# slits and gaps of that width are closed; smaller: contours drawn twice are not recognized, and
+# what lies inside would attract the distance.
+_TOUCHING = 64 * 2.220446049250313e-16
+# Chains longer than this many times what counts as one point have their ends moved to where others
+# end. Smaller: a chain might shrink to a point.
+_LONG = 8.0
+
+
+def filled_boundary(outline: Arclets, evenodd: bool, largest: float) -> Arclets:
+    """The arclets that have the filled region on exactly one side, which is their left.
+
+    Parameters
+    ----------
+    outline : Arclets
+        All that was drawn.
+    evenodd : bool
+        The fill rule; otherwise nonzero.
+    largest : float
+        The largest absolute coordinate of the shape, in its own system.
+
+    Raises
+    ------
+    InputError
+        If nothing is filled.
+    """
+    touching = _TOUCHING * largest
+    parts = cut_at_crossings(outline, touching)
+    sides = look_at_sides(outline, parts, evenodd, touching)
+    keep, left = bounding(outline, parts, sides, touching)
+    if not keep.any():
+        rule, other = ("evenodd", "nonzero") if evenodd else ("nonzero", "evenodd")
+        raise InputError(
+            f"the contours fill nothing under the rule {rule!r}: they are traced to and fro, or "
+            f"twice, or nowhere wider than the rounding of their coordinates, {touching:.2g}; draw "
+            f"each once, or try fill={other!r}"
+        )
+    if keep.all() and left.all() and parts.closed.all():
+        return outline
+    healed = _cut_in_vain(outline, parts, keep, left, 2.0 * MERGE * touching)
+    parts, chains = without_cuts(parts, healed)
+    return _rebuild(outline, parts, keep[chains], left[chains], touching)
+
+
+def _cut_in_vain(outline: Arclets, parts: Parts, keep: Bools, left: Bools, near: float) -> Bools:
+    """Which chains go on, on the same arclet, from where only the one before it is kept as well.
+
+    What crosses there bounds nothing. At a small angle it may have cut off a part so short that its
+    curvature is all rounding.
+    """
+    first = np.flatnonzero(parts.place == 0)
+    before = np.maximum(first - 1, 0)
+    chain = parts.chain[before]
+    inner = (parts.arclet[before] == parts.arclet[first]) & (parts.interval[first, 0] > 0.0)
+    inner &= (parts.following[chain] == parts.chain[first]) & (first > 0) & ~parts.closed
+    inner &= keep & keep[chain] & (left == left[chain])
+    some = keep & ~parts.closed
+    group = groups(chain_ends(outline, parts)[:, some].reshape(-1, 2), near).reshape(2, -1)
+    alone = np.zeros(len(keep), dtype=np.bool_)
+    alone[some] = np.bincount(group.ravel())[group[0]] == 2
+    return np.asarray(inner & alone)
+
+
+def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching: float) -> Arclets:
+    """The kept chains, each turned so that the inside is on its left."""
+    label = np.cumsum(keep) - 1
+    kept = keep[parts.chain]
+    degree = degrees(outline)
+    meeting = _meeting_points(outline, parts, keep, 2.0 * MERGE * touching)
+    last = np.diff(parts.chain, append=-1) != 0
+    arcs_of, labels, places = [], [], []
+    for d in np.unique(degree[parts.arclet[kept]]):
+        rows = np.flatnonzero(kept & (degree[parts.arclet] == d))
+        arclet = parts.arclet[rows]
+        control, start = control_points(outline.power[arclet, : d + 1]), outline.start[arclet]
+        arcs = _restrict(
+            Arcs(control, start, outline.piece[arclet], outline.interval[arclet]),
+            parts.interval[rows],
+        )
+        turned = ~left[parts.chain[rows]]
+        whole = parts.interval[rows, 1] == 1.0
+        arcs.start[turned] = np.where(whole[:, None], outline.end[arclet], ends(arcs))[turned]
+        arcs.control[turned] = arcs.control[turned, ::-1]
+        arcs.interval[turned] = arcs.interval[turned, ::-1]
+        # What meets in one point does so to the bit.
+        chain, side = parts.chain[rows], turned.astype(np.int64)
+        begins = np.flatnonzero(np.where(turned, last[rows], parts.place[rows] == 0))
+        arcs.start[begins] = meeting[side[begins], chain[begins]]
+        stops = np.flatnonzero(np.where(turned, parts.place[rows] == 0, last[rows]))
+        arcs.control[stops, -1] += meeting[1 - side[stops], chain[stops]] - ends(arcs)[stops]
+        arcs_of.append(arcs)
+        labels.append(label[parts.chain[rows]])
+        places.append(np.where(turned, -parts.place[rows], parts.place[rows]))
+    runs = Runs(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
+    boundary = assemble(arcs_of, runs, outline.origin)
+    open_end = np.flatnonzero(boundary.following < 0)
+    chain = np.flatnonzero(keep)[boundary.run[open_end]]
+    boundary.end[open_end] = meeting[left[chain].astype(np.int64), chain]
+    boundary.arcs[open_end, 1:3] = boundary.end[open_end]
+    # Pairs of kept chains that were drawn one after the other with the inside on the same side.
+    follows = parts.following
+    drawn = np.flatnonzero(keep & keep[follows] & (left == left[follows]) & ~parts.closed)
+    first = np.where(left[drawn], drawn, follows[drawn])
+    second = np.where(left[drawn], follows[drawn], drawn)
+    return _stitch(boundary, label[first], label[second], 2.0 * MERGE * touching)
+
+
+def _meeting_points(outline: Arclets, parts: Parts, keep: Bools, near: float) -> Floats:
+    """Where chains start and end as they were drawn, one point for all that meet: (2, n, 2).
+
+    Those of chains that are dropped or no longer than a few times ``near`` stay where they are.
+    """
+    points = chain_ends(outline, parts)
+    first = np.flatnonzero(parts.place == 0)
+    last = np.append(first[1:], len(parts.chain)) - 1
+    middle = parts.arclet[(first + last) // 2]
+    reach = np.maximum(
+        np.hypot(*(outline.start[middle] - points[0]).T),
+        np.hypot(*(points[1] - points[0]).T),
+    )
+    joined = keep & ~parts.closed & (reach > _LONG * near)
+    if not joined.any():
+        return points
+    some = points[:, joined].reshape(-1, 2)
+    group = groups(some, near)
+    _, representative = np.unique(group, return_index=True)
+    points[:, joined] = some[representative][group].reshape(2, -1, 2)
+    return points
+
+
+def _restrict(arcs: Arcs, interval: Floats) -> Arcs:
+    """The parts of arcs between two parameters each."""
+    low, high = interval.T
+    count = len(low)
+    result = Arcs(arcs.control.copy(), arcs.start.copy(), arcs.piece, arcs.interval.copy())
+    for at, part, whole in (
+        (high, slice(0, count), high == 1.0),
+        (low / high, slice(count, None), low == 0.0),
+    ):
+        cut = split(result, at)
+        result.control[~whole] = cut.control[part][~whole]
+        result.start[~whole] = cut.start[part][~whole]
+        result.interval[~whole] = cut.interval[part][~whole]
+    return result
+
+
+def _stitch(boundary: Arclets, first: Ints, second: Ints, near: float) -> Arclets:
+    """Lead each chain's open end on to the start of a chain in the same place.
+
+    Chains (by number) that were drawn ``second`` after ``first`` go together. Of the others that
+    meet, the one that turns most to the left keeps closest to the inside.
+    """
+    following = boundary.following.copy()
+    ends = np.flatnonzero(following < 0)
+    led_to = np.zeros(len(following), dtype=bool)
+    led_to[following[following >= 0]] = True
+    starts = np.flatnonzero(~led_to)
+    # Open chains have one end and one start each.
+    start_of = np.full(int(boundary.run.max()) + 1, -1)
+    end_of = start_of.copy()
+    start_of[boundary.run[starts]], end_of[boundary.run[ends]] = starts, ends
+    following[end_of[first]] = start_of[second]
+    led_to[start_of[second]] = True
+    ends = np.flatnonzero(following < 0)
+    starts = np.flatnonzero(~led_to)
+    starts = starts[np.argsort(boundary.start[starts, 0])]
+    x = boundary.start[starts, 0]
+    low = np.searchsorted(x, boundary.end[ends, 0] - near)
+    high = np.searchsorted(x, boundary.end[ends, 0] + near, side="right")
+    arriving = tangents_at(boundary, ends, np.ones(len(ends)))
+    leaving = tangents_at(boundary, starts, np.zeros(len(starts)))
+    free = np.ones(len(starts), dtype=bool)
+    for i, end in enumerate(ends):
+        candidates = np.arange(low[i], high[i])
+        gap = np.hypot(*(boundary.start[starts[candidates]] - boundary.end[end]).T)
+        candidates = candidates[(gap <= near) & free[candidates]]
+        if len(candidates):
+            a, b = arriving[i], leaving[candidates]
+            turn = np.arctan2(a[0] * b[:, 1] - a[1] * b[:, 0], b @ a)
+            best = candidates[np.argmax(turn)]
+            free[best] = False
+            following[end] = starts[best]
+    return boundary._replace(following=following)

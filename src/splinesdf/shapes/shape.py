@@ -1,0 +1,386 @@
+"""`Shape`: closed loops of polynomial pieces and the rule that says what they fill."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from splinesdf.arclets.curvature import bends
+from splinesdf.arclets.cutting import build_arclets
+from splinesdf.arclets.joints import joints
+from splinesdf.arclets.kinds import kinds
+from splinesdf.arclets.points import turns_at_ends
+from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
+from splinesdf.arclets.vertices import Vertices, vertices
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats, Ints, as_points, finite, whole
+from splinesdf.shapes.boundary import filled_boundary
+from splinesdf.shapes.loops import closed_loops
+from splinesdf.shapes.repeats import drawn_once, repeats_note
+from splinesdf.shapes.sources.compiled import compile_curve, periodic_cubic_spline, polygon
+from splinesdf.shapes.sources.formula import parse_curve
+from splinesdf.shapes.sources.nurbs import nurbs_pieces
+from splinesdf.shapes.sources.svg_path import parse_path
+
+Fill = Literal["nonzero", "evenodd"]
+
+# Share of the size by which a domain goes beyond the box, if none is given.
+_MARGIN = 0.1
+# Samples a piece in `Shape.sample`. More: no picture shows them, and a slip of the pen takes all
+# memory; fewer: a circle of one piece could look like a polygon.
+_MOST_SAMPLES = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A region of the plane bounded by closed loops of polynomial pieces.
+
+    Attributes
+    ----------
+    control : ndarray, shape (n_control, 2)
+        Bernstein-Bézier control points of all pieces, one piece after the other.
+    starts : ndarray, shape (n_pieces + 1,)
+        Piece ``i`` has the control points ``starts[i]:starts[i + 1]``; a piece of degree d
+        has d + 1 of them.
+    loops : ndarray, shape (n_loops + 1,)
+        Loop ``j`` has the pieces ``loops[j]:loops[j + 1]``. Each ends where the next starts.
+    fill : {"nonzero", "evenodd"}
+        Which winding numbers count as inside.
+    y_down : bool
+        True if the source's y axis points down (SVG). The coordinates are as in the
+        source; only pictures and writers look at this.
+    name : str
+        For titles and messages.
+    notes : tuple of str
+        What was left out or mended, one line each.
+    """
+
+    control: Floats
+    starts: Ints
+    loops: Ints
+    fill: Fill = "nonzero"
+    y_down: bool = False
+    name: str = ""
+    notes: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "control", as_points(self.control))
+
+    @classmethod
+    def from_pieces(
+        cls,
+        loops: Iterable[Sequence[ArrayLike]],
+        *,
+        fill: str | None = None,
+        close: bool = False,
+        y_down: bool = False,
+        name: str = "",
+        notes: tuple[str, ...] = (),
+        once: bool | None = None,
+    ) -> Shape:
+        """Assemble a shape from loops of Bézier pieces of any degree.
+
+        Parameters
+        ----------
+        loops : iterable of sequences of array_like, shape (degree + 1, 2)
+            The control points of each piece of each loop. Pieces of length zero are dropped.
+        fill : {"nonzero", "evenodd"}, optional
+            Nonzero unless given.
+        close : bool
+            Close an open loop by a straight piece instead of refusing it.
+        once : bool, optional
+            Count a contour that is drawn several times once, wherever it starts, is cut, or
+            leads, and say so in the notes. Under either rule a hole would vanish that is drawn
+            twice. True unless ``fill`` is given, which then decides.
+
+        Raises
+        ------
+        OpenContourError
+            If a loop's pieces do not follow one another, or it does not end where it starts.
+        InputError
+            If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
+            the coordinates, nothing is left, or ``fill`` is unknown.
+        """
+        rule = _fill_rule("nonzero" if fill is None else fill)
+        closed = closed_loops(loops, close=close)
+        # By itself, a contour fills the same under nonzero however often it is traced.
+        if (fill is None if once is None else once) and (len(closed) > 1 or rule == "evenodd"):
+            closed, repeated = drawn_once(closed)
+            notes = (*notes, *repeats_note(repeated))
+        flat = [piece for loop in closed for piece in loop]
+        return cls(
+            control=np.concatenate(flat),
+            starts=np.cumsum([0] + [len(piece) for piece in flat], dtype=np.int64),
+            loops=np.cumsum([0] + [len(loop) for loop in closed], dtype=np.int64),
+            fill=rule,
+            y_down=y_down,
+            name=name,
+            notes=notes,
+        )
+
+    @classmethod
+    def from_formula(
+        cls,
+        x: str,
+        y: str,
+        *,
+        t: tuple[float | str, float | str] = (0.0, "2*pi"),
+        fill: str | None = None,
+        name: str = "",
+    ) -> Shape:
+        """One closed curve given by two formulas in ``t``.
+
+        The curve is compiled once into polynomial pieces of degree 7 that agree with it to
+        about four units in the last place. Corners are found by bisection.
+
+        Parameters
+        ----------
+        x, y : str
+            Arithmetic in ``t`` with ``+ - * / ^``, ``pi``, ``e`` and the usual functions.
+        t : pair of float or str
+            The parameter's range; formulas without ``t`` are allowed.
+        """
+        curve = parse_curve(x, y, t)
+        return cls.from_pieces([compile_curve(curve)], fill=fill, name=name)
+
+    @classmethod
+    def from_formulas(
+        cls,
+        sections: Iterable[tuple[str, str, tuple[float | str, float | str]]],
+        *,
+        fill: str | None = None,
+        close: bool = False,
+        name: str = "",
+    ) -> Shape:
+        """One closed curve given by several formulas, each for one part of it.
+
+        Parameters
+        ----------
+        sections : iterable of (x, y, (start, stop))
+            As in `from_formula`. Each section starts where the one before it ended, the first
+            where the last one ended; the parameters of different sections have nothing in common.
+            Make an end of a section wherever the formulas have a corner or bend suddenly.
+        close : bool
+            Close the curve by a straight piece instead of refusing it.
+
+        Raises
+        ------
+        OpenContourError
+            If the sections do not follow one another, or the curve does not end where it starts.
+        InputError
+            If a formula cannot be used; the message names the section.
+        """
+        loop: list[Floats] = []
+        for number, section in enumerate(sections, 1):
+            try:
+                x, y, t = section
+            except (TypeError, ValueError) as error:
+                raise InputError(
+                    f"section {number}: expected (x, y, (start, stop)), got {str(section)[:60]!r}"
+                ) from error
+            try:
+                loop += compile_curve(parse_curve(x, y, t))
+            except InputError as error:
+                raise InputError(f"section {number}: {error}") from error
+        return cls.from_pieces([loop], fill=fill, close=close, name=name)
+
+    @classmethod
+    def from_nurbs(
+        cls,
+        control: ArrayLike,
+        *,
+        degree: SupportsIndex = 3,
+        knots: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
+        periodic: bool = False,
+        fill: str | None = None,
+        close: bool = False,
+        name: str = "",
+    ) -> Shape:
+        """One closed B-spline curve, or NURBS curve if there are weights.
+
+        Up to degree 7 without weights the curve is exact, otherwise it is compiled into pieces of
+        degree 7 that agree with it to a few units in the last place.
+
+        Parameters
+        ----------
+        control : array_like, shape (n, 2)
+        degree : int
+            From 1 to 25.
+        knots : array_like, shape (n + degree + 1,), optional
+            Equal steps between repeated ends if not given; see `nurbs_pieces` for other
+            conventions, and for those of periodic curves.
+        weights : array_like, shape (n,), optional
+            Positive; the control points are not multiplied by them.
+        periodic : bool
+            Wrap the control points around to a smooth closed curve.
+        close : bool
+            Close an open curve by a straight piece instead of refusing it.
+
+        Raises
+        ------
+        OpenContourError
+            If the curve does not end where it starts.
+        InputError
+            If the numbers do not make a curve.
+        """
+        pieces = nurbs_pieces(
+            control, degree=degree, knots=knots, weights=weights, periodic=periodic
+        )
+        return cls.from_pieces([pieces], fill=fill, close=close, name=name)
+
+    @classmethod
+    def from_points(
+        cls, points: ArrayLike, *, smooth: bool = False, fill: str | None = None, name: str = ""
+    ) -> Shape:
+        """One closed polygon, or with ``smooth=True`` the periodic C² cubic through its corners.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 2)
+            In order; the last is joined to the first. Repeated neighbours are dropped.
+        """
+        corners = as_points(points)
+        if corners.ndim != 2:
+            raise InputError(f"expected points of shape (n, 2), got shape {corners.shape}")
+        loop = periodic_cubic_spline(corners) if smooth else polygon(corners)
+        return cls.from_pieces([loop], fill=fill, name=name)
+
+    @classmethod
+    def from_svg_path(
+        cls, path: str, *, fill: str | None = None, close: bool = False, name: str = ""
+    ) -> Shape:
+        """The subpaths of SVG path data (the ``d`` attribute), coordinates as written.
+
+        Parameters
+        ----------
+        close : bool
+            Close open subpaths by a straight piece, as an SVG fill does, instead of refusing them.
+        """
+        return cls.from_pieces(parse_path(path), fill=fill, close=close, y_down=True, name=name)
+
+    @property
+    def piece_count(self) -> int:
+        """How many polynomial pieces the boundary has."""
+        return len(self.starts) - 1
+
+    @property
+    def loop_count(self) -> int:
+        """How many closed loops the boundary has."""
+        return len(self.loops) - 1
+
+    @cached_property
+    def box(self) -> tuple[float, float, float, float]:
+        """The smallest box around the curve: xmin, ymin, xmax, ymax."""
+        low = self.arclets.boxes[:, :2].min(axis=0) + self.arclets.origin
+        high = self.arclets.boxes[:, 2:].max(axis=0) + self.arclets.origin
+        return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+    @property
+    def size(self) -> float:
+        """The larger side of the box."""
+        xmin, ymin, xmax, ymax = self.box
+        return max(xmax - xmin, ymax - ymin)
+
+    def default_domain(self, beyond: float = 0.0) -> tuple[float, float, float, float]:
+        """The box grown by a tenth of the size, and by ``beyond``, on all sides."""
+        xmin, ymin, xmax, ymax = self.box
+        margin = _MARGIN * self.size + finite(beyond, "beyond")
+        return xmin - margin, ymin - margin, xmax + margin, ymax + margin
+
+    @cached_property
+    def arclets(self) -> Arclets:
+        """All that was drawn, cut into short monotone arcs under a tree, made on first use."""
+        return build_arclets(self.control, self.starts, self.loops)
+
+    @cached_property
+    def boundary(self) -> Arclets:
+        """The arcs that separate inside from outside, inside on their left, made on first use.
+
+        Raises
+        ------
+        InputError
+            If nothing is filled: every contour is traced to and fro, or twice under "evenodd".
+        """
+        largest = float(np.abs(self.control).max())
+        return filled_boundary(self.arclets, self.fill == "evenodd", largest)
+
+    @cached_property
+    def bends(self) -> Bends:
+        """How the arcs of the boundary bend, made on first use."""
+        return bends(self.boundary)
+
+    @cached_property
+    def joints(self) -> Joints:
+        """How the arcs of the boundary follow one another around the inside, made on first use."""
+        return joints(self.boundary, self._vertices, outside=False)
+
+    @cached_property
+    def joints_outside(self) -> Joints:
+        """How they do around the outside, which differs where the boundary touches itself."""
+        if not len(self._vertices.ends):
+            return self.joints
+        return joints(self.boundary, self._vertices, outside=True)
+
+    @cached_property
+    def _vertices(self) -> Vertices:
+        return vertices(self.boundary)
+
+    @cached_property
+    def kinds(self) -> Kinds:
+        """Which arcs of the boundary are straight or parts of circles, made on first use."""
+        return kinds(self.boundary)
+
+    @cached_property
+    def corners(self) -> Floats:
+        """How far the boundary turns to the left at the start and end of each arc, (n, 2)."""
+        return turns_at_ends(self.boundary)
+
+    def piece(self, index: int) -> Floats:
+        """Control points of one piece, shape (degree + 1, 2)."""
+        index = whole(index, "index", least=0, most=self.piece_count - 1)
+        return self.control[self.starts[index] : self.starts[index + 1]]
+
+    def sample(self, count: int) -> list[Floats]:
+        """Every loop as a closed polyline with ``count`` equal parameter steps a piece.
+
+        Returns
+        -------
+        list of ndarray, shape (n, 2)
+            For pictures and rough work: the last point repeats the first.
+        """
+        count = whole(count, "count", least=1, most=_MOST_SAMPLES)
+        parameters = np.linspace(0.0, 1.0, count, endpoint=False)
+        result = []
+        for first, last in zip(self.loops[:-1], self.loops[1:], strict=True):
+            parts = [
+                evaluate_bezier(self.piece(i), parameters[:1] if self._is_line(i) else parameters)
+                for i in range(first, last)
+            ]
+            result.append(np.concatenate([*parts, parts[0][:1]]))
+        return result
+
+    def _is_line(self, index: int) -> bool:
+        return bool(self.starts[index + 1] - self.starts[index] == 2)
+
+
+def evaluate_bezier(control: Floats, parameters: Floats) -> Floats:
+    """Points of a Bézier piece by de Casteljau: (degree + 1, 2), (n,) -> (n, 2)."""
+    t = parameters[:, None, None]
+    points = np.broadcast_to(control, (len(parameters), *control.shape))
+    while points.shape[1] > 1:
+        points = (1.0 - t) * points[:, :-1] + t * points[:, 1:]
+    return points[:, 0]
+
+
+def _fill_rule(fill: str) -> Fill:
+    if fill == "nonzero":
+        return "nonzero"
+    if fill == "evenodd":
+        return "evenodd"
+    raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r}")

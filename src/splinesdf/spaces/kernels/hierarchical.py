@@ -1,0 +1,209 @@
+"""A quadtree that grows, with a ring of cells around its domain, and its spline's ordinates.
+
+Nodes never change their number: what is known of one stays where it is. Children follow one
+another: (2i, 2j), (2i, 2j + 1), (2i + 1, 2j), (2i + 1, 2j + 1). A node of the ring is split with
+the nodes of the domain beside it, so that every function that reaches into a cell is a node.
+
+    neighbors of a node      2  5  8      ^ j
+                             1  4  7      |
+                             0  3  6      +--> i
+"""
+
+from __future__ import annotations
+
+from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.ground.jit import kernel, uncounted
+from splinesdf.spaces.tables import Nodes
+
+# Where a neighbor would be: in the domain, but coarser; or beyond it.
+_COARSER, _BEYOND = -1, -2
+
+
+@kernel
+def link(nodes: Nodes, order: Ints, near: Ints) -> None:
+    """Fill the neighbors of all nodes.
+
+    Parameters
+    ----------
+    nodes : Nodes
+    order : ndarray, shape (n,)
+        The nodes, coarse ones first.
+    near : ndarray, shape (n, 9)
+    """
+    m, n = nodes.shape[0], nodes.shape[1]
+    for node in range((m + 2) * (n + 2)):
+        i, j = nodes.place[node, 0], nodes.place[node, 1]
+        for a in range(-1, 2):
+            for b in range(-1, 2):
+                there = -1 <= i + a <= m and -1 <= j + b <= n
+                other = (i + a + 1) * (n + 2) + j + b + 1
+                near[node, 4 + 3 * a + b] = other if there else _BEYOND
+    for node in order:
+        child = nodes.child[node]
+        if child < 0:
+            continue
+        limit_i = m << (nodes.level[node] + 1)
+        limit_j = n << (nodes.level[node] + 1)
+        for k in range(4):
+            for a in range(-1, 2):
+                for b in range(-1, 2):
+                    i, j = (k >> 1) + a, (k & 1) + b
+                    other = near[node, 4 + 3 * (i >> 1) + (j >> 1)]
+                    if other >= 0 and nodes.child[other] >= 0:
+                        found = nodes.child[other] + 2 * (i & 1) + (j & 1)
+                    else:
+                        x, y = nodes.place[child + k, 0] + a, nodes.place[child + k, 1] + b
+                        inside = 0 <= x < limit_i and 0 <= y < limit_j
+                        found = _COARSER if inside else _BEYOND
+                    near[child + k, 4 + 3 * a + b] = found
+
+
+@kernel
+def owned(nodes: Nodes, own: Bools) -> None:
+    """Fill whether a node has a coefficient of its own: its 3 x 3 cells are all as fine."""
+    m, n = nodes.shape[0], nodes.shape[1]
+    for node in range(nodes.level.shape[0]):
+        level = nodes.level[node]
+        i, j = nodes.place[node, 0], nodes.place[node, 1]
+        own[node] = -1 <= i <= m << level and -1 <= j <= n << level
+        for k in range(9):
+            if nodes.near[node, k] == _COARSER:
+                own[node] = False
+
+
+@kernel
+def mark(nodes: Nodes, targets: Ints, split: Bools) -> bool:
+    """Mark what must be split so that all targets are; whether once is not enough.
+
+    Parameters
+    ----------
+    nodes : Nodes
+    targets : ndarray, shape (k, 3)
+        Level, i, j of cells, those outside the domain are passed over.
+    split : ndarray of bool, shape (n,)
+    """
+    again = False
+    m, n = nodes.shape[0], nodes.shape[1]
+    for k in range(targets.shape[0]):
+        level, i, j = targets[k, 0], targets[k, 1], targets[k, 2]
+        if not (0 <= i < m << level and 0 <= j < n << level):
+            continue
+        node = _ancestor(nodes, level, i, j)
+        if nodes.child[node] >= 0:
+            continue
+        again = again or nodes.level[node] < level
+        split[node] = True
+        for other in nodes.near[node]:
+            if other >= 0 and nodes.child[other] < 0 and _outside(nodes, other):
+                split[other] = True
+    return again
+
+
+@uncounted
+def _outside(nodes: Nodes, node: int) -> bool:
+    level, i, j = nodes.level[node], nodes.place[node, 0], nodes.place[node, 1]
+    return not (0 <= i < nodes.shape[0] << level and 0 <= j < nodes.shape[1] << level)
+
+
+@uncounted
+def _ancestor(nodes: Nodes, level: int, i: int, j: int) -> int:
+    """The node of a cell, or the finest one around it."""
+    node = ((i >> level) + 1) * (nodes.shape[1] + 2) + (j >> level) + 1
+    for k in range(level - 1, -1, -1):
+        if nodes.child[node] < 0:
+            break
+        node = nodes.child[node] + 2 * ((i >> k) & 1) + ((j >> k) & 1)
+    return int(node)
+
+
+@kernel
+def coefficients(nodes: Nodes, order: Ints, own: Bools, values: Floats, result: Floats) -> None:
+    """Fill the coefficient of every node: its own value, or by subdivision of coarser ones."""
+    m, n = nodes.shape[0], nodes.shape[1]
+    for node in order:
+        if own[node]:
+            result[node] = values[node]
+            continue
+        level, i, j = nodes.level[node], nodes.place[node, 0], nodes.place[node, 1]
+        if not (-1 <= i <= m << level and -1 <= j <= n << level):
+            result[node] = 0.0  # in the ring, but no function of it reaches the domain
+        else:
+            result[node] = _subdivided(nodes, result, level, i, j)
+
+
+@kernel
+def ordinates(nodes: Nodes, cells: Ints, values: Floats, result: Floats) -> None:
+    """Fill the eight ordinates of cells from the coefficients of all nodes.
+
+    Parameters
+    ----------
+    nodes : Nodes
+    cells : ndarray, shape (k,)
+        Nodes in the domain that are not split.
+    values : ndarray, shape (n,)
+    result : ndarray, shape (k, 8)
+    """
+    for place in range(cells.shape[0]):
+        node = cells[place]
+        c = _block(nodes, values, node)
+        c00, c01, c02, c10, c11, c12, c20, c21, c22 = c
+        result[place, 0] = 0.25 * (c00 + c01 + c10 + c11)
+        result[place, 1] = 0.25 * (c10 + c11 + c20 + c21)
+        result[place, 2] = 0.25 * (c01 + c02 + c11 + c12)
+        result[place, 3] = 0.25 * (c11 + c12 + c21 + c22)
+        result[place, 4] = 0.5 * (c11 + c10)
+        result[place, 5] = 0.5 * (c11 + c21)
+        result[place, 6] = 0.5 * (c11 + c12)
+        result[place, 7] = 0.5 * (c11 + c01)
+
+
+@uncounted
+def _block(
+    nodes: Nodes, values: Floats, node: int
+) -> tuple[float, float, float, float, float, float, float, float, float]:
+    """The coefficients of the 3 x 3 cells around a node."""
+    return (
+        _near(nodes, values, node, 0),
+        _near(nodes, values, node, 1),
+        _near(nodes, values, node, 2),
+        _near(nodes, values, node, 3),
+        _near(nodes, values, node, 4),
+        _near(nodes, values, node, 5),
+        _near(nodes, values, node, 6),
+        _near(nodes, values, node, 7),
+        _near(nodes, values, node, 8),
+    )
+
+
+@uncounted
+def _near(nodes: Nodes, values: Floats, node: int, k: int) -> float:
+    other = nodes.near[node, k]
+    if other >= 0:
+        return float(values[other])
+    level, i, j = nodes.level[node], nodes.place[node, 0], nodes.place[node, 1]
+    return _subdivided(nodes, values, level, i + k // 3 - 1, j + k % 3 - 1)
+
+
+@uncounted
+def _subdivided(nodes: Nodes, values: Floats, level: int, i: int, j: int) -> float:
+    """A coefficient from those of the level below, which are known where there are nodes.
+
+    A half of the parent's and a quarter of each of the parent's neighbors on the child's sides.
+    """
+    level -= 1
+    if level < 0:
+        return 0.0
+    total = 0.0
+    for k in range(3):
+        x, y = i >> 1, j >> 1
+        if k == 1:
+            x += 2 * (i & 1) - 1
+        if k == 2:
+            y += 2 * (j & 1) - 1
+        if not (-1 <= x <= nodes.shape[0] << level and -1 <= y <= nodes.shape[1] << level):
+            continue
+        node = _ancestor(nodes, level, x, y)
+        known = nodes.level[node] == level
+        value = values[node] if known else _subdivided(nodes, values, level, x, y)
+        total += (0.5 if k == 0 else 0.25) * value
+    return total

@@ -1,0 +1,376 @@
+"""`SplineSDF`: a C¹ piecewise-quadratic function on a mesh, and what one asks of a distance."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from splinesdf.contours.contour import Contour
+from splinesdf.contours.nesting import nested
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, as_points
+from splinesdf.ground.blocks import in_blocks, processors
+from splinesdf.meshes import Box, Grid, Mesh, Quadtree
+from splinesdf.meshes.lattice import DistanceGrid, node_count
+from splinesdf.meshes.mesh import check_domain
+from splinesdf.shapes.shape import Shape
+from splinesdf.spaces import bspline_coefficients, tensor_ordinates
+from splinesdf.spaces.quadratic_c1 import frames, power_form
+from splinesdf.splines.archive import Archive, read_archive, write_archive
+from splinesdf.splines.level_sets import contours
+from splinesdf.splines.provenance import Provenance
+
+# After the first step along the gradient, which an exact distance would make the last, so many
+# Newton steps bring the point onto the zero level set. Each squares what is left of the error.
+_CORRECTIONS = 3
+# A quadtree's points enter it at the finest level that has at most so many places a cell. More:
+# memory, 8 bytes a place beside the 64 of a cell; fewer: points go down more levels one by one.
+_PLACES = 2.0
+# With fewer nodes of a grid a cell than this, to go from node to node is quicker than from cell
+# to cell.
+_NODES = 8
+# Nodes of a grid outside the domain that a thread extends to at a time.
+_OUTER = 8192
+
+Outside = Literal["extend", "nan"]
+
+
+@dataclass(frozen=True, eq=False)
+class SplineSDF:
+    """A C¹ quadratic spline on a criss-cross mesh, read as a signed distance.
+
+    What is asked outside its domain is answered by the extension
+
+        F(p) = min over q on the domain's border of  s(q) + |p - q|,
+
+    1-Lipschitz whatever the spline, and as good as the spline: if the shape lies in the domain,
+    |F - u| <= the largest |s - u| on the border, in the whole plane. (The segment from p to its
+    closest point meets the border, so u(p) = min of u(q) + |p - q|; then s is put for u.) Of a
+    fit for a band, or of a shape that leaves the domain, F only continues what the spline has at
+    the border. Beside the border F may be less than s, by twice the error at most.
+
+    What takes points also takes ``outside``: "extend", or "nan" for NaN there (``inside``: False).
+    Points that are not finite give NaN.
+
+    Attributes
+    ----------
+    mesh : Grid or Quadtree
+    ordinates : ndarray, shape (n_cells, 8)
+        Bernstein-Bézier ordinates of each cell (see `splinesdf.spaces`).
+    name : str
+    y_down : bool
+        As in `Shape`: only pictures and writers look at this. If there is a shape, both are its
+        own: the defaults stand for them, anything else is refused.
+    shape : Shape or None
+        What the spline approximates, so that the exact distance stays at hand.
+    made : Provenance or None
+        From what request it was made, and how well it answers it.
+    """
+
+    mesh: Mesh
+    ordinates: Floats
+    name: str = ""
+    y_down: bool = False
+    shape: Shape | None = None
+    made: Provenance | None = None
+
+    def __post_init__(self) -> None:
+        ordinates = as_floats(self.ordinates, "ordinates")
+        if ordinates.ndim != 2 or ordinates.shape[1] != 8:
+            raise InputError(f"expected ordinates of shape (n_cells, 8), got {ordinates.shape}")
+        object.__setattr__(self, "ordinates", ordinates)
+        if self.shape is None:
+            return
+        name, y_down = self.name or self.shape.name, self.y_down or self.shape.y_down
+        if (name, y_down) != (self.shape.name, self.shape.y_down):
+            raise InputError(
+                f"expected the name {self.shape.name!r:.60} and y_down={self.shape.y_down} of the "
+                f"shape, got {name!r:.60} and y_down={y_down}: change those of the shape"
+            )
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "y_down", y_down)
+
+    @property
+    def domain(self) -> Box:
+        """The box on which the spline is defined: xmin, ymin, xmax, ymax."""
+        return self.mesh.domain
+
+    def __call__(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
+        """Values, shape (..., 2) -> (...,)."""
+        array = as_points(points)
+        return self._evaluate(array, 0, outside)[0].reshape(array.shape[:-1])
+
+    def grid(
+        self, nx: int, ny: int, *, domain: Box | None = None, outside: Outside = "extend"
+    ) -> DistanceGrid:
+        """Values at the nodes of a grid, its border included, quicker than point by point.
+
+        Parameters
+        ----------
+        nx, ny : int
+            Nodes each way, at least 2.
+        domain : (xmin, ymin, xmax, ymax), optional
+            The spline's own unless given.
+        outside : {"extend", "nan"}
+
+        Returns
+        -------
+        DistanceGrid
+            As of `splinesdf.signed_distance_grid`: ``distance[j, i]`` is the value at
+            (x[i], y[j]), to rounding.
+        """
+        from splinesdf.spaces.kernels.evaluation import (
+            evaluate_lattice,  # Numba loads only when used
+        )
+
+        _check_outside(outside)
+        box = self.domain if domain is None else check_domain(domain)
+        x, y = (
+            np.linspace(box[0], box[2], node_count(nx, "nx")),
+            np.linspace(box[1], box[3], node_count(ny, "ny")),
+        )
+        if len(x) * len(y) < _NODES * len(self.ordinates):
+            nodes = np.stack(np.meshgrid(x, y), axis=-1)
+            return DistanceGrid(x, y, self(nodes, outside=outside))
+        columns, rows = self._nodes_of_cells(x, 0), self._nodes_of_cells(y, 1)
+        distance = np.full((len(y), len(x)), np.nan)
+
+        local_x, local_y = x - self.domain[0], y - self.domain[1]
+
+        def work(part: slice) -> None:
+            cells = self._frames[part], self._powers[part], columns[part], rows[part]
+            evaluate_lattice(*cells, local_x, local_y, distance)
+
+        count = len(self.ordinates)
+        in_blocks(count, work, size=min(4096, math.ceil(count / (4 * processors()))))
+        if outside == "extend":
+            self._extend_lattice(x, y, distance)
+        return DistanceGrid(x, y, distance)
+
+    def gradient(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
+        """Gradients, shape (..., 2) -> (..., 2); outside the domain they are unit vectors."""
+        array = as_points(points)
+        return self._evaluate(array, 1, outside)[1].reshape(array.shape)
+
+    def value_and_gradient(
+        self, points: ArrayLike, *, outside: Outside = "extend"
+    ) -> tuple[Floats, Floats]:
+        """Values and gradients in one pass, shape (..., 2) -> (...,), (..., 2)."""
+        array = as_points(points)
+        value, gradient, _ = self._evaluate(array, 1, outside)
+        return value.reshape(array.shape[:-1]), gradient.reshape(array.shape)
+
+    def hessian(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
+        """Second derivatives, shape (..., 2) -> (..., 2, 2): constant on each triangle."""
+        array = as_points(points)
+        second = self._evaluate(array, 2, outside)[2]
+        return second[:, [0, 1, 1, 2]].reshape(*array.shape, 2)
+
+    def normal(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
+        """Unit vectors along the gradient, shape (..., 2) -> (..., 2); outward at the curve.
+
+        Where |s - u| <= e and both have second derivatives of at most M in sum, the gradient is
+        within 2 √(M e) of that of the distance (Landau), and the normal within twice that. So the
+        normal is right to the square root of the tolerance away from the medial axis and wrong
+        on it. NaN where the gradient vanishes, which happens only near the medial axis.
+        """
+        gradient = self.gradient(points, outside=outside)
+        length = np.hypot(gradient[..., 0], gradient[..., 1])[..., None]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(gradient / length)
+
+    def curvature(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
+        """Curvature of the level set through each point, positive where the inside is convex.
+
+        Shape (..., 2) -> (...,). Second derivatives of a quadratic spline jump from triangle to
+        triangle: away from the medial axis the error is of the order of the cell's side h, where
+        the value's is h³ and the gradient's h². A fit to a tolerance has h ~ tolerance^(1/3).
+
+        The shape knows better: with ``found = splinesdf.project(shape, points)`` the level set's
+        curvature is ``k / (1 + k * found.distance)``, ``k = found.curvature``, to rounding.
+        """
+        array = as_points(points)
+        _, gradient, second = self._evaluate(array, 2, outside)
+        (x, y), (xx, xy, yy) = gradient.T, second.T
+        with np.errstate(invalid="ignore", divide="ignore"):
+            bend = (xx * y * y - 2.0 * xy * x * y + yy * x * x) / np.hypot(x, y) ** 3
+        return np.asarray(bend.reshape(array.shape[:-1]))
+
+    def closest_point(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
+        """The point of the zero level set near each point, shape (..., 2) -> (..., 2).
+
+        One step ``p - s grad s``, exact for an exact distance, then Newton steps onto ``s = 0``.
+        Away from the medial axis it is within the fit's tolerance of the curve; on it, it is
+        meaningless. With ``outside="nan"``: NaN also if a step leaves the domain.
+        """
+        array = as_points(points)
+        result = array.reshape(-1, 2)
+        for _ in range(1 + _CORRECTIONS):
+            value, gradient, _second = self._evaluate(result, 1, outside)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                squared = np.sum(gradient * gradient, axis=1)
+                result = np.ascontiguousarray(result - (value / squared)[:, None] * gradient)
+        return result.reshape(array.shape)
+
+    def inside(self, points: ArrayLike, *, outside: Outside = "extend") -> Bools:
+        """Whether the value is negative, shape (..., 2) -> (...,)."""
+        return np.asarray(self(points, outside=outside) < 0.0)
+
+    def contours(self, level: float) -> list[Contour]:
+        """The level set ``s = level`` as chains of conic arcs, lower values on their left.
+
+        Closed and with a continuous tangent, but for those that leave the domain (``closed`` is
+        False) and where the gradient vanishes. Left and right as x turns into y. Each has the
+        contour that directly encloses it as its ``parent``.
+        """
+        return nested(contours(self.mesh, self.ordinates, level, y_down=self.y_down))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the spline to an ``.npz`` file, its shape and provenance with it.
+
+        The file is whole or not there: if the writing is cut short, killed even, what stood under
+        the name before is untouched. `splinesdf.load` reads it.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written, or a number of the spline is not finite.
+        """
+        archive = Archive(self.mesh, self.ordinates, self.name, self.y_down, self.shape, self.made)
+        write_archive(path, archive)
+
+    @cached_property
+    def _frames(self) -> Floats:
+        return frames(self.mesh.local_boxes)
+
+    @cached_property
+    def _powers(self) -> Floats:
+        return power_form(self.ordinates)
+
+    @cached_property
+    def _ways(self) -> tuple[Ints, Ints]:
+        """How points get to the cells of a quadtree, see `splinesdf.spaces.kernels.evaluation`."""
+        from splinesdf.spaces.kernels.evaluation import fill_ways
+
+        mesh = self.mesh
+        assert isinstance(mesh, Quadtree)
+        (m, n), levels = mesh.shape, 0
+        while levels < mesh.depth and m * n * 4 ** (levels + 1) <= _PLACES * len(self.ordinates):
+            levels += 1
+        entry = np.empty((m << levels, n << levels), dtype=np.int64)
+        walk = np.empty(len(mesh.child), dtype=np.int64)
+        fill_ways(np.array(mesh.shape), mesh.child, mesh.cell_of, levels, entry, walk)
+        return entry, walk
+
+    @cached_property
+    def _border(self) -> tuple[Ints, Floats, Floats]:
+        """The spline along the domain's border, see `splinesdf.splines.kernels.extension`."""
+        from splinesdf.splines.kernels.extension import fill_drops
+
+        boxes, corners = self.mesh.local_boxes, self.mesh.corners
+        edges = []
+        # Side after side: cells beside it, by which corner; columns of V, E, V; the axis along it.
+        for by, columns, axis in (
+            (1, (0, 4, 1), 0),
+            (2, (1, 5, 3), 1),
+            (3, (2, 6, 3), 0),
+            (0, (0, 7, 2), 1),
+        ):
+            last = corners[:, by].max() if by > 1 else corners[:, by].min()
+            cells = np.flatnonzero(corners[:, by] == last)
+            cells = cells[np.argsort(corners[cells, axis])]
+            ordinates = self.ordinates[cells][:, columns]
+            side = np.column_stack([boxes[cells, axis], ordinates[:, 0], ordinates[:, 1]])
+            length = self.domain[axis + 2] - self.domain[axis]
+            edges.append(np.vstack([side, [length, ordinates[-1, 2], 0.0]]))
+        counts = np.array([len(side) for side in edges])
+        starts = np.concatenate([[0], np.cumsum(counts)])
+        drops = np.zeros((4, 2 << math.ceil(math.log2(counts.max()))))
+        table = np.ascontiguousarray(np.concatenate(edges))
+        fill_drops(starts, table, drops)
+        return starts, table, drops
+
+    def _evaluate(
+        self, array: Floats, order: int, outside: Outside
+    ) -> tuple[Floats, Floats, Floats]:
+        from splinesdf.spaces.kernels.evaluation import evaluate_grid, evaluate_tree
+
+        _check_outside(outside)
+        points = array.reshape(-1, 2)
+        count = len(points)
+        value = np.empty(count)
+        gradient = np.empty((count if order > 0 else 0, 2))
+        hessian = np.empty((count if order > 1 else 0, 3))
+        mesh, powers = self.mesh, self._powers
+        evaluate: Callable[..., int] = (
+            partial(evaluate_grid, mesh.x, mesh.y, powers)
+            if isinstance(mesh, Grid)
+            else partial(evaluate_tree, np.array(self.domain), *self._ways, powers)
+        )
+
+        def work(part: slice) -> None:
+            asked = points[part], value[part], gradient[part], hessian[part]
+            beyond = evaluate(*asked)
+            if beyond > 0 and outside == "extend":
+                self._extend(*asked)
+
+        in_blocks(count, work)
+        return value, gradient, hessian
+
+    def _extend(self, points: Floats, value: Floats, gradient: Floats, hessian: Floats) -> None:
+        from splinesdf.splines.kernels.extension import extend
+
+        extend(np.array(self.domain), *self._border, points, value, gradient, hessian)
+
+    def _extend_lattice(self, x: Floats, y: Floats, distance: Floats) -> None:
+        """Fill the nodes outside the domain."""
+        xmin, ymin, xmax, ymax = self.domain
+        beside = (y < ymin) | (y > ymax)
+        nodes = np.flatnonzero(beside[:, None] | ((x < xmin) | (x > xmax)))
+        flat = distance.reshape(-1)
+
+        def work(part: slice) -> None:
+            j, i = np.divmod(nodes[part], len(x))
+            value = np.empty(len(i))
+            self._extend(np.column_stack([x[i], y[j]]), value, np.empty((0, 2)), np.empty((0, 3)))
+            flat[nodes[part]] = value
+
+        in_blocks(len(nodes), work, size=_OUTER)
+
+    def _nodes_of_cells(self, nodes: Floats, axis: int) -> Ints:
+        """The range of increasing nodes in each cell; the last cells have the border's too."""
+        boxes, corners = self.mesh.boxes, self.mesh.corners
+        first = np.searchsorted(nodes, boxes[:, axis], side="left")
+        end = np.searchsorted(nodes, boxes[:, axis + 2], side="left")
+        last = corners[:, axis + 2] == corners[:, axis + 2].max()
+        end[last] = np.searchsorted(nodes, self.domain[axis + 2], side="right")
+        return np.column_stack([first, end])
+
+
+def _check_outside(outside: str) -> None:
+    if outside not in ("extend", "nan"):
+        raise InputError(f"expected outside 'extend' or 'nan', got {outside!r:.60}")
+
+
+def load(path: str | os.PathLike[str]) -> SplineSDF:
+    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one."""
+    return SplineSDF(*read_archive(path))
+
+
+def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:
+    """The B-spline of cell (i, j) of a grid, -1 and m, n being the ring around the domain.
+
+    It is positive inside an octagon in the 3 x 3 cells around (i, j); all of them sum to one.
+
+    References
+    ----------
+    [Wang2014] Theorem 5 and the 41 values after it.
+    """
+    return SplineSDF(mesh, tensor_ordinates(mesh, bspline_coefficients(mesh, i, j)))
