@@ -63,9 +63,12 @@ def as_floats(values: ArrayLike, what: str) -> Floats:
 def as_points(points: ArrayLike) -> Floats:
     """Points as a contiguous float64 array of shape (..., 2), or an `InputError`.
 
-    NaN and infinity pass: they are answered by NaN, point by point.
+    NaN and infinity pass: they are answered by NaN, point by point. Read-only arrays are copied:
+    kernels would be compiled once more for them.
     """
     array = as_floats(points, "points")
+    if not array.flags.writeable:
+        array = array.copy()
     if array.ndim == 0 or array.shape[-1] != 2:
         raise InputError(f"expected points of shape (..., 2), got shape {array.shape}")
     return array
