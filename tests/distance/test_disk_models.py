@@ -11,12 +11,13 @@ import splinesdf as ss
 from splinesdf.arclets.kernels.nearest import closest_on, room_to_search
 from splinesdf.distance.kernels.branches import find_chains
 from splinesdf.distance.kernels.feet import gather
+from splinesdf.distance.tables import Bent
 from splinesdf.offsets.kernels.gaps import _least_bend
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma
 
 # Arclets near a disk, as many as the enclosure looks at, and what a row of each table holds.
-MOST, NEAR, MODELS = 32, 8, (256, 12)
+MOST, NEAR, MODELS = 32, 9, (256, 12)
 
 
 def bump(turn: float, bend: float) -> ss.Shape:
@@ -49,7 +50,8 @@ def models_at(shape: ss.Shape, x: float, y: float, r: float) -> np.ndarray:
     )
     if not exact:
         return models[:0]
-    found = find_chains(boundary, bends, ids, number, px, py, r, (near, models))
+    bent = Bent(boundary.arcs, boundary.following, bends.rows, bends.second, bends.previous)
+    found = find_chains(bent, ids, number, (px, py, r), near, models)
     return models[:found].copy()
 
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from splinesdf.arclets.tables import Candidates
 from splinesdf.distance.exact import signed_distance
-from splinesdf.fits.tables import Asked, Brackets
+from splinesdf.distance.tables import Bent
+from splinesdf.fits.tables import Asked, Brackets, Limits
 from splinesdf.fits.trials import Known
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.blocks import in_blocks
@@ -166,6 +167,17 @@ def _enclose(
         return halves[:, 0], triangles
     boundary, bends, wanted = search.shape.boundary, search.shape.bends, search.wanted
     in_box = len(halves) // len(boxes)
+    bent = Bent(boundary.arcs, boundary.following, bends.rows, bends.second, bends.previous)
+    limits = Limits(
+        bands=search.bands,
+        around=wanted.around,
+        largest=search.largest,
+        threshold=wanted.threshold,
+        tight=wanted.tight,
+        enough=wanted.enough,
+        effort=wanted.effort,
+        patience=_PATIENCE if in_box > 1 else 1,
+    )
     known = search.low[halves]
     low, high = np.empty(halves.shape), np.empty(halves.shape)
     counts = np.empty(halves.shape, dtype=np.bool_)
@@ -183,14 +195,6 @@ def _enclose(
             group=np.arange(size) // in_box,
             anchor=anchor[block],
             low=known[block],
-            bands=search.bands,
-            around=wanted.around,
-            largest=search.largest,
-            threshold=wanted.threshold,
-            tight=wanted.tight,
-            enough=wanted.enough,
-            effort=wanted.effort,
-            patience=_PATIENCE if in_box > 1 else 1,
         )
         brackets = Brackets(
             low=low[block],
@@ -200,7 +204,7 @@ def _enclose(
             open_from=np.empty(size * _OPEN, dtype=np.int64),
             open_triangles=np.empty((size * _OPEN, 12)),
         )
-        enclose(boundary, bends, Candidates(starts, nodes), asked, brackets)
+        enclose(boundary.tree, Candidates(starts, nodes), bent, asked, limits, brackets)
         found = int(brackets.open_count[0])
         owner = halves[block].reshape(-1)[brackets.open_from[:found]]
         left[block.start] = owner, brackets.open_triangles[:found].copy()

@@ -8,12 +8,17 @@ from splinesdf.ground.arrays import Bools, Floats, Ints
 
 
 class Asked(NamedTuple):
-    """Triangles of a spline on which its error is to be enclosed, and when to stop."""
+    """Triangles of a spline on which its error is to be enclosed."""
 
     triangles: Floats  # (n, 12) corners A B C, coefficients AA BB CC AB BC CA
     group: Ints  # (n,) which of the lists of candidates is for it
     anchor: Floats  # (n, 3) a point and its exact signed distance
     low: Floats  # (n, 2) what is known of the largest error on its halves: at least this
+
+
+class Limits(NamedTuple):
+    """Where an error counts, and when it is known well enough."""
+
     bands: Floats  # (k, 2) only where the distance or the spline is in one; none for everywhere
     around: bool  # or one is above a band where the other is below it
     largest: float  # largest coordinate of all, for rounding
@@ -33,3 +38,15 @@ class Brackets(NamedTuple):
     open_count: Ints  # (1,)
     open_from: Ints  # (m,) the half that an open part is of: 2 triangle + (0 or 1)
     open_triangles: Floats  # (m, 12) corners, coefficients
+
+
+class Parts(NamedTuple):
+    """Room for the parts of a triangle that are still to be looked at, and for one of them."""
+
+    triangles: Floats  # (n, 12) as in `Asked`
+    sizes: Ints  # (n, 3) how often halved, how many arclets (-1: too many), which half
+    lists: Ints  # (n, most) those arclets
+    near: Floats  # (most, 9) see `splinesdf.distance.kernels.feet.gather`
+    models: Floats  # (points, 12) see `distance.kernels.branches.find_chains`; differences from it
+    errors: Floats  # (3,) the spline less the distance at the corners
+    mean: Floats  # (6,) of some differences

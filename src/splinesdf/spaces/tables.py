@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from splinesdf.ground.arrays import Ints
+from splinesdf.ground.arrays import Floats, Ints
 
 
 class Nodes(NamedTuple):
@@ -15,3 +15,20 @@ class Nodes(NamedTuple):
     place: Ints  # (n, 2) the cell of its level, from -1 on
     child: Ints  # (n,) first of four children, -1 for none
     near: Ints  # (n, 9) the 3 x 3 nodes around, negative where there is none
+
+
+class Evaluated(NamedTuple):
+    """Points, and what is filled in there of a spline."""
+
+    points: Floats  # (n, 2)
+    value: Floats  # (n,)
+    gradient: Floats  # (n or 0, 2), only filled if not empty
+    hessian: Floats  # (n or 0, 3) xx, xy, yy, likewise; it needs the gradient
+
+
+class Block(NamedTuple):
+    """Room for a block of points on their way to the coefficients of their cells."""
+
+    cells: Ints  # (n,)
+    local: Floats  # (4, n) s, t, and the inverse sides of the cell
+    rows: Floats  # (n, 8) the coefficients

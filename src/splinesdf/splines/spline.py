@@ -23,9 +23,11 @@ from splinesdf.meshes.mesh import check_domain
 from splinesdf.shapes.shape import Shape
 from splinesdf.spaces import bspline_coefficients, tensor_ordinates
 from splinesdf.spaces.quadratic_c1 import frames, power_form
+from splinesdf.spaces.tables import Evaluated
 from splinesdf.splines.archive import Archive, read_archive, write_archive
 from splinesdf.splines.level_sets import contours
 from splinesdf.splines.provenance import Provenance
+from splinesdf.splines.tables import Border
 
 # After the first step along the gradient, which an exact distance would make the last, so many
 # Newton steps bring the point onto the zero level set. Each squares what is left of the error.
@@ -270,7 +272,7 @@ class SplineSDF:
         return entry, walk
 
     @cached_property
-    def _border(self) -> tuple[Ints, Floats, Floats]:
+    def _border(self) -> Border:
         """The spline along the domain's border, see `splinesdf.splines.kernels.extension`."""
         from splinesdf.splines.kernels.extension import fill_drops
 
@@ -294,8 +296,9 @@ class SplineSDF:
         starts = np.concatenate([[0], np.cumsum(counts)])
         drops = np.zeros((4, 2 << math.ceil(math.log2(counts.max()))))
         table = np.ascontiguousarray(np.concatenate(edges))
-        fill_drops(starts, table, drops)
-        return starts, table, drops
+        border = Border(starts, table, drops)
+        fill_drops(border)
+        return border
 
     def _evaluate(
         self, array: Floats, order: int, outside: Outside
@@ -316,18 +319,17 @@ class SplineSDF:
         )
 
         def work(part: slice) -> None:
-            asked = points[part], value[part], gradient[part], hessian[part]
-            beyond = evaluate(*asked)
-            if beyond > 0 and outside == "extend":
-                self._extend(*asked)
+            asked = Evaluated(points[part], value[part], gradient[part], hessian[part])
+            if evaluate(asked) > 0 and outside == "extend":
+                self._extend(asked)
 
         in_blocks(count, work)
         return value, gradient, hessian
 
-    def _extend(self, points: Floats, value: Floats, gradient: Floats, hessian: Floats) -> None:
+    def _extend(self, evaluated: Evaluated) -> None:
         from splinesdf.splines.kernels.extension import extend
 
-        extend(np.array(self.domain), *self._border, points, value, gradient, hessian)
+        extend(np.array(self.domain), self._border, evaluated)
 
     def _extend_lattice(self, x: Floats, y: Floats, distance: Floats) -> None:
         """Fill the nodes outside the domain."""
@@ -339,7 +341,8 @@ class SplineSDF:
         def work(part: slice) -> None:
             j, i = np.divmod(nodes[part], len(x))
             value = np.empty(len(i))
-            self._extend(np.column_stack([x[i], y[j]]), value, np.empty((0, 2)), np.empty((0, 3)))
+            points = np.column_stack([x[i], y[j]])
+            self._extend(Evaluated(points, value, np.empty((0, 2)), np.empty((0, 3))))
             flat[nodes[part]] = value
 
         in_blocks(len(nodes), work, size=_OUTER)

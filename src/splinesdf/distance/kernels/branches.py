@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.tables import Arclets, Bends
 from splinesdf.distance.kernels.feet import derivatives
+from splinesdf.distance.tables import Bent
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
 
@@ -30,7 +30,7 @@ _BEFORE, _START, _END, _AFTER = 1, 2, 4, 8
 
 
 @uncounted
-def side_of(bends: Bends, ids: Ints, near: Floats, count: int, nearest: float, grain: float) -> int:
+def side_of(bent: Bent, ids: Ints, count: int, near: Floats, nearest: float, grain: float) -> int:
     """-1 inside, 1 outside, by the arclets in which p has a foot; 0 if they do not agree."""
     side = 0
     for j in range(count):
@@ -40,13 +40,13 @@ def side_of(bends: Bends, ids: Ints, near: Floats, count: int, nearest: float, g
         # In a corner the side is that of the sum of both normals.
         other = -1
         if near[j, 1] == 0.0:
-            other = bends.previous[ids[j]]
+            other = bent.previous[ids[j]]
             if _place(ids, count, other) >= 0:
-                tx, ty = tx + bends.rows[other, 7], ty + bends.rows[other, 8]
+                tx, ty = tx + bent.rows[other, 7], ty + bent.rows[other, 8]
         elif near[j, 1] == 1.0:
             for k in range(count):
-                if bends.previous[ids[k]] == ids[j]:
-                    tx, ty = tx + bends.rows[ids[k], 5], ty + bends.rows[ids[k], 6]
+                if bent.previous[ids[k]] == ids[j]:
+                    tx, ty = tx + bent.rows[ids[k], 5], ty + bent.rows[ids[k], 6]
         across = near[j, 2] * ty - near[j, 3] * tx
         here = 1 if across > 1e-9 * near[j, 0] else (-1 if across < -1e-9 * near[j, 0] else 0)
         if here == 0 or (side != 0 and here != side):
@@ -71,14 +71,12 @@ def _joint(rows: Floats, before: int, after: int, vx: float, vy: float, r: float
 
 @uncounted
 def find_chains(
-    arclets: Arclets,
-    bends: Bends,
+    bent: Bent,
     ids: Ints,
     count: int,
-    px: float,
-    py: float,
-    r: float,
-    room: tuple[Floats, Floats],
+    disk: tuple[float, float, float],
+    near: Floats,
+    models: Floats,
 ) -> int:
     """Fill a model of the distance for each chain; how many, 0 if there is no such structure.
 
@@ -86,9 +84,9 @@ def find_chains(
     derivative along the level set, the remainder's bound (2.9), and 1 if points of the disk can
     have their foot in the chain's first or last point.
     """
-    arcs, following = arclets.arcs, arclets.following
-    rows, before = bends.rows, bends.previous
-    near, models = room
+    arcs, following = bent.arcs, bent.following
+    rows, before = bent.rows, bent.previous
+    px, py, r = disk
     chains = 0
     for j in range(count):
         previous = _place(ids, count, before[ids[j]])
@@ -113,9 +111,7 @@ def find_chains(
             continue
         if chains == _CHAINS:
             return 0
-        if not _model(
-            arclets, bends, ids, count, (j, last, foot), (px, py, r), near, models[chains]
-        ):
+        if not _model(bent, ids, count, (j, last, foot), disk, near, models[chains]):
             return 0
         chains += 1
     return chains
@@ -123,8 +119,7 @@ def find_chains(
 
 @uncounted
 def _model(
-    arclets: Arclets,
-    bends: Bends,
+    bent: Bent,
     ids: Ints,
     count: int,
     chain: tuple[int, int, int],
@@ -136,7 +131,7 @@ def _model(
 
     The chain is given by the places of its first and last arclet and of that with p's foot.
     """
-    arcs, following, rows = arclets.arcs, arclets.following, bends.rows
+    arcs, following, rows = bent.arcs, bent.following, bent.rows
     first, last, foot = chain
     px, py, r = disk
     # Ranges of the curvature and of its change, jumps of both where arclets meet smoothly, and
@@ -178,7 +173,7 @@ def _model(
         j = _place(ids, count, following[ids[j]])
     if not (away > 1e-3 * r and high - low < np.inf):
         return False
-    u, gx, gy, k, sided = _at_foot(arclets, bends, ids, chain, near)
+    u, gx, gy, k, sided = _at_foot(bent, ids, chain, near)
     ended = ended or not sided
     if cones == 0:
         # Feet move by no more than 2 r / (1 + kappa u) along the curve, if that is not halved on
@@ -191,8 +186,8 @@ def _model(
     least = min(_bend(low, u, r), _bend(high, u, r))
     if not least > _FOCAL:
         return False
-    low_k = min(k, low / (1.0 + low * (u - r)), low / (1.0 + low * (u + r)))
-    high_k = max(k, high / (1.0 + high * (u - r)), high / (1.0 + high * (u + r)))
+    low_k = min(min(k, low / (1.0 + low * (u - r))), low / (1.0 + low * (u + r)))
+    high_k = max(max(k, high / (1.0 + high * (u - r))), high / (1.0 + high * (u + r)))
     largest = max(high_k, -low_k)
     third = _MIXED * largest * largest + slope / (least * least * least)
     jumps /= least * least
@@ -211,7 +206,7 @@ def _model(
 
 @uncounted
 def _at_foot(
-    arclets: Arclets, bends: Bends, ids: Ints, chain: tuple[int, int, int], near: Floats
+    bent: Bent, ids: Ints, chain: tuple[int, int, int], near: Floats
 ) -> tuple[float, float, float, float, bool]:
     """Distance to a chain, its gradient, its second derivative along the level set.
 
@@ -227,10 +222,10 @@ def _at_foot(
         return u, ty, -tx, near[foot, 4] / (1.0 + near[foot, 4] * u), True
     turn = 0.0
     if t == 1.0 and foot != last:
-        after = bends.rows[arclets.following[ids[foot]]]
+        after = bent.rows[bent.following[ids[foot]]]
         turn = tx * after[6] - ty * after[5]
     elif t == 0.0 and foot != first:
-        before = bends.rows[bends.previous[ids[foot]]]
+        before = bent.rows[bent.previous[ids[foot]]]
         turn = before[7] * ty - before[8] * tx
     # A corner is seen from the side that the curve turns away from.
     u = -d if turn < -_CUSP else d
@@ -255,8 +250,7 @@ def _place(ids: Ints, count: int, arclet: int) -> int:
 
 @uncounted
 def find_points(
-    arclets: Arclets,
-    bends: Bends,
+    bent: Bent,
     ids: Ints,
     count: int,
     disk: tuple[float, float, float],
@@ -273,7 +267,7 @@ def find_points(
     nearest = np.inf
     total = 0
     for j in range(count):
-        row = bends.rows[ids[j]]
+        row = bent.rows[ids[j]]
         # From a point half a step away the distance is larger by half ^ 2 (1 / distance + bend) / 2
         # at most, and by half the step itself.
         parts = 0.5 * row[9] / spare
@@ -285,8 +279,8 @@ def find_points(
             return 0
         parts = math.ceil(parts)
         for n in range(parts + 1):
-            x, y, _, _, _, _ = derivatives(arclets.arcs, ids[j], n / parts)
-            wx, wy = px - arclets.arcs[ids[j], 3] - x, py - arclets.arcs[ids[j], 4] - y
+            x, y, _, _, _, _ = derivatives(bent.arcs, ids[j], n / parts)
+            wx, wy = px - bent.arcs[ids[j], 3] - x, py - bent.arcs[ids[j], 4] - y
             d = math.sqrt(wx * wx + wy * wy)
             if d - nearest > 2.0 * r + spare:
                 continue
@@ -301,7 +295,7 @@ def find_points(
     kept = 0
     for m in range(total):
         if models[m, 0] - nearest <= 2.0 * r + spare:
-            for column in range(6):
-                models[kept, column] = models[m, column]
+            for e in range(6):
+                models[kept, e] = models[m, e]
             kept += 1
     return kept

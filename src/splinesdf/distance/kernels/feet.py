@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from splinesdf.ground.arrays import Floats, Ints
-from splinesdf.ground.jit import kernel, uncounted
+from splinesdf.ground.jit import uncounted
 
 # Halley's steps toward a foot on an arclet with a convex squared distance; the third power of a
 # step's error is left, so six are plenty, and a bracket keeps them safe.
@@ -22,7 +22,7 @@ _CONVEX_NOISE = 128 * 2.220446049250313e-16
 _BEFORE, _START, _END, _AFTER = 1, 2, 4, 8
 
 
-@kernel
+@uncounted
 def gather(
     arcs: Floats,
     rows: Floats,
@@ -36,18 +36,17 @@ def gather(
 
     A row of ``near``: distance, or minus a lower bound of it; parameter of the foot; vector from
     the foot to p; curvature and unit tangent there; flags (the foot of every point of the disk is
-    the arclet's start: 1, or end: 8; that of some may be: 2, 4).
+    the arclet's start: 1, or end: 8; that of some may be: 2, 4); a lower bound of the distance.
     """
     px, py, r = disk
     nearest = np.inf
-    lowest = np.empty(near.shape[0])
     for j in range(count):
         i = ids[j]
         row = rows[i]
         degree = int(arcs[i, 0])
         vx, vy = px - arcs[i, 3], py - arcs[i, 4]
-        lowest[j] = _from_chord(arcs, i, vx, vy) - row[10]
-        if lowest[j] > nearest + 2.0 * r:
+        near[j, 8] = _from_chord(arcs, i, vx, vy) - row[10]
+        if near[j, 8] > nearest + 2.0 * r:
             near[j, 0] = -1.0
             continue
         first = -(vx * row[5] + vy * row[6])
@@ -58,8 +57,8 @@ def gather(
             value = min(vx * vx + vy * vy, (arcs[i, 1] - px) ** 2 + (arcs[i, 2] - py) ** 2)
             nearest = min(nearest, math.sqrt(value))
             if degree > 1:
-                lowest[j] = max(lowest[j], _lower_bound(arcs, i, vx, vy))
-            near[j, 0] = -max(lowest[j], 1e-300)
+                near[j, 8] = max(near[j, 8], _lower_bound(arcs, i, vx, vy))
+            near[j, 0] = -max(near[j, 8], 1e-300)
             continue
         if first >= 0.0:
             t, wx, wy, tx, ty, bend = 0.0, vx, vy, row[5], row[6], row[3]
@@ -81,16 +80,16 @@ def gather(
         near[j, 4], near[j, 5], near[j, 6] = bend, tx, ty
         flags = (_BEFORE if first >= r else 0) | (_START if first > -r else 0)
         near[j, 7] = flags | (_END if last < r else 0) | (_AFTER if last <= -r else 0)
-        lowest[j] = distance
+        near[j, 8] = distance
         nearest = min(nearest, distance)
     kept = 0
     exact = True
     limit = nearest + 2.0 * r
     for j in range(count):
-        if lowest[j] <= limit:
+        if near[j, 8] <= limit:
             exact = exact and near[j, 0] >= 0.0
             ids[kept] = ids[j]
-            for k in range(8):
+            for k in range(9):
                 near[kept, k] = near[j, k]
             kept += 1
     return kept, nearest, exact

@@ -5,21 +5,37 @@ Used by `enclosure`. The spline has the coefficients AA BB CC AB BC CA; p is the
 
 from __future__ import annotations
 
-from splinesdf.fits.tables import Asked
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.jit import uncounted
 
 
 @uncounted
-def meets(asked: Asked, low: float, high: float, c: Floats, grain: float) -> bool:
+def least_of(c: Floats) -> float:
+    """The smallest of six coefficients."""
+    least = float(c[0])
+    for k in range(1, 6):
+        least = min(least, c[k])
+    return least
+
+
+@uncounted
+def most_of(c: Floats) -> float:
+    """The largest of six coefficients."""
+    most = float(c[0])
+    for k in range(1, 6):
+        most = max(most, c[k])
+    return most
+
+
+@uncounted
+def meets(bands: Floats, around: bool, low: float, high: float, c: Floats, grain: float) -> bool:
     """Whether the distance, from low to high, or the spline can be in a band, or around it."""
-    bands = asked.bands
-    least = min(c[0], c[1], c[2], c[3], c[4], c[5]) - grain
-    most = max(c[0], c[1], c[2], c[3], c[4], c[5]) + grain
+    least = least_of(c) - grain
+    most = most_of(c) + grain
     for k in range(bands.shape[0]):
-        spline = (least <= bands[k, 1], most >= bands[k, 0])
-        distance = (low <= bands[k, 1], high >= bands[k, 0])
-        if _counts(spline, distance, asked.around):
+        below, above = least <= bands[k, 1], most >= bands[k, 0]
+        nearer, farther = low <= bands[k, 1], high >= bands[k, 0]
+        if _counts(below, above, nearer, farther, around):
             return True
     return False
 
@@ -27,13 +43,14 @@ def meets(asked: Asked, low: float, high: float, c: Floats, grain: float) -> boo
 @uncounted
 def seen(errors: Floats, margin: float, value: float, room: float) -> float:
     """What |s - u| is at least in a corner or in p, where it is known up to some margins."""
-    corners = max(abs(errors[0]), abs(errors[1]), abs(errors[2]))
-    return float(max(0.0, corners - margin, abs(value) - room))
+    corners = max(max(abs(errors[0]), abs(errors[1])), abs(errors[2]))
+    return float(max(max(0.0, corners - margin), abs(value) - room))
 
 
 @uncounted
 def seen_in_bands(
-    asked: Asked,
+    bands: Floats,
+    around: bool,
     c: Floats,
     errors: Floats,
     margin: float,
@@ -47,31 +64,31 @@ def seen_in_bands(
     known to be below a band's end in one point and above its other end in one, as both are
     continuous.
     """
-    bands = asked.bands
     found = 0.0
     middle = 0.25 * (c[0] + 2.0 * c[3] + c[1])
     for k in range(bands.shape[0]):
         low, high = bands[k, 0], bands[k, 1]
-        spline_below = spline_above = below = above = False
-        for v in range(4):
-            spline, error, unsure = middle, value, room
-            if v < 3:
-                spline, error, unsure = c[v], errors[v], margin
-            distance = spline - error
-            first = (spline <= high, spline >= low)
-            second = (distance + unsure <= high, distance - unsure >= low)
-            if _counts(first, second, asked.around):
-                found = max(found, abs(error) - unsure)
-            spline_below, spline_above = spline_below or first[0], spline_above or first[1]
-            below, above = below or second[0], above or second[1]
-        if _counts((spline_below, spline_above), (below, above), asked.around):
+        distance = middle - value
+        spline_below, spline_above = middle <= high, middle >= low
+        some_nearer, some_farther = distance + room <= high, distance - room >= low
+        if _counts(spline_below, spline_above, some_nearer, some_farther, around):
+            found = max(found, abs(value) - room)
+        for v in range(3):
+            distance = c[v] - errors[v]
+            below, above = c[v] <= high, c[v] >= low
+            nearer, farther = distance + margin <= high, distance - margin >= low
+            if _counts(below, above, nearer, farther, around):
+                found = max(found, abs(errors[v]) - margin)
+            spline_below, spline_above = spline_below or below, spline_above or above
+            some_nearer, some_farther = some_nearer or nearer, some_farther or farther
+        if _counts(spline_below, spline_above, some_nearer, some_farther, around):
             found = max(found, everywhere)
     return found
 
 
 @uncounted
-def _counts(spline: tuple[bool, bool], distance: tuple[bool, bool], around: bool) -> bool:
-    """Whether one is below and above a band's ends, or both together are."""
+def _counts(below: bool, above: bool, nearer: bool, farther: bool, around: bool) -> bool:
+    """Whether the spline, or the distance, is below and above a band's ends, or both together."""
     if around:
-        return (spline[0] or distance[0]) and (spline[1] or distance[1])
-    return (spline[0] and spline[1]) or (distance[0] and distance[1])
+        return (below or nearer) and (above or farther)
+    return (below and above) or (nearer and farther)

@@ -20,11 +20,12 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.tables import Arclets, Bends, Candidates
+from splinesdf.arclets.tables import Candidates
 from splinesdf.distance.kernels.branches import find_chains, find_points, side_of
 from splinesdf.distance.kernels.feet import gather
-from splinesdf.fits.kernels.bands import meets, seen, seen_in_bands
-from splinesdf.fits.tables import Asked, Brackets
+from splinesdf.distance.tables import Bent
+from splinesdf.fits.kernels.bands import least_of, meets, most_of, seen, seen_in_bands
+from splinesdf.fits.tables import Asked, Brackets, Limits, Parts
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
 
@@ -51,24 +52,50 @@ _GRAIN = 256 * 2.220446049250313e-16
 
 @kernel
 def enclose(
-    arclets: Arclets, bends: Bends, candidates: Candidates, asked: Asked, brackets: Brackets
+    tree: Floats,
+    candidates: Candidates,
+    bent: Bent,
+    asked: Asked,
+    limits: Limits,
+    brackets: Brackets,
 ) -> None:
     """Bracket max |s - u| over triangles.
 
     Parameters
     ----------
-    arclets, bends : Arclets, Bends
+    tree : ndarray
+        Of `Arclets`.
     candidates : Candidates
         The arclets that can be closest, for groups of triangles.
+    bent : Bent
     asked : Asked
-        Triangles, and when to stop. Coordinates are relative to ``arclets.origin``.
+        Triangles; coordinates are relative to the origin of the arclets.
+    limits : Limits
+        When to stop.
     brackets : Brackets
         Filled, for both halves of each triangle. A half is left as soon as its error is known to
-        exceed ``asked.enough``.
+        exceed ``limits.enough``.
     """
-    stack = _stack()
+    size = _DEPTH + 4
+    parts = Parts(
+        np.empty((size, 12)),
+        np.empty((size, 3), dtype=np.int64),
+        np.empty((size, _MOST), dtype=np.int64),
+        np.empty((_MOST, 9)),
+        np.empty((_POINTS, 12)),
+        np.empty(3),
+        np.empty(6),
+    )
     for k in range(asked.triangles.shape[0]):
-        _enclose_one(arclets, bends, candidates, asked, k, stack, brackets)
+        first, end = candidates.starts[asked.group[k]], candidates.starts[asked.group[k] + 1]
+        for e in range(12):
+            parts.triangles[0, e] = asked.triangles[k, e]
+        parts.sizes[0, 0], parts.sizes[0, 2] = 0, 0
+        parts.sizes[0, 1] = _listed(tree, candidates.nodes, first, end, parts.lists)
+        for half in range(2):
+            brackets.low[k, half], brackets.high[k, half] = asked.low[k, half], 0.0
+            brackets.counts[k, half] = False
+        _enclose_one(bent, asked.anchor[k], limits, k, parts, brackets)
 
 
 @kernel
@@ -82,167 +109,161 @@ def steepest(triangles: Floats, slopes: Floats) -> None:
 def quarter(triangles: Floats, quarters: Floats) -> None:
     """Fill the halves of both halves of each triangle: (n, 12) -> (4 n, 12)."""
     for k in range(triangles.shape[0]):
-        quarters[4 * k] = triangles[k]
+        for e in range(12):
+            quarters[4 * k, e] = triangles[k, e]
         _halve(quarters, 4 * k, 4 * k + 2)
         _halve(quarters, 4 * k, 4 * k + 1)
         _halve(quarters, 4 * k + 2, 4 * k + 3)
 
 
-@kernel
-def _stack() -> tuple[Floats, Ints, Ints, Floats, Floats, Floats]:
-    """Room for the parts of a triangle that are still to be looked at, and for one of them."""
-    size = _DEPTH + 4
-    return (
-        np.empty((size, 12)),  # corners A B C, coefficients
-        np.empty((size, 3), dtype=np.int64),  # how often halved, how many arclets, which half
-        np.empty((size, _MOST), dtype=np.int64),  # those arclets
-        np.empty((_MOST, 8)),  # see `gather`
-        np.empty((_POINTS, 12)),  # see `find_chains` and `_bound`
-        np.empty(3),  # s - u at the corners
-    )
-
-
-@kernel
+@uncounted
 def _enclose_one(
-    arclets: Arclets,
-    bends: Bends,
-    candidates: Candidates,
-    asked: Asked,
-    k: int,
-    stack: tuple[Floats, Ints, Ints, Floats, Floats, Floats],
-    brackets: Brackets,
+    bent: Bent, anchor: Floats, limits: Limits, k: int, parts: Parts, brackets: Brackets
 ) -> None:
-    """Bracket the error on both halves of triangle k."""
-    arcs, rows, second = arclets.arcs, bends.rows, bends.second
-    parts, sizes, lists, near, models, errors = stack
-    group = asked.group[k]
-    kept = candidates.nodes[candidates.starts[group] : candidates.starts[group + 1]]
-    parts[0] = asked.triangles[k]
-    sizes[0, 0], sizes[0, 1], sizes[0, 2] = 0, _listed(arclets.tree, kept, lists[0]), 0
-    size = 1
-    anchor_x, anchor_y, anchored = asked.anchor[k, 0], asked.anchor[k, 1], asked.anchor[k, 2]
-    grain = _GRAIN * (asked.largest + abs(anchored))
+    """Bracket the error on both halves of triangle k, which is the first of the parts."""
+    sizes = parts.sizes
     lows, highs = brackets.low[k], brackets.high[k]
-    lows[:], highs[:] = asked.low[k], 0.0
-    brackets.counts[k, :] = False
-    effort = 0
+    size, effort = 1, 0
     while size > 0:
         size -= 1
         depth, half = sizes[size, 0], sizes[size, 2]
         # Halves come one after the other, the second one first.
         effort = 0 if depth == 1 else effort + 1
         low = lows[half] if depth > 0 else min(lows[0], lows[1])
-        if low > asked.enough:
+        if low > limits.enough:
             continue
-        triangle, c = parts[size], parts[size, 6:]
-        px, py = 0.5 * (triangle[0] + triangle[2]), 0.5 * (triangle[1] + triangle[3])
-        r = _radius(triangle, px, py)
-        exact = False
-        nearest, spare = 0.0, 0.0
-        sign, chains = 0, 0
-        lo, hi = -np.inf, np.inf
-        value, room, margin = 0.0, np.inf, np.inf
-        errors[:] = 0.0
-        if sizes[size, 1] >= 0:
-            sizes[size, 1], nearest, exact = gather(
-                arcs, rows, second, lists[size], sizes[size, 1], (px, py, r), near
-            )
-            away = math.sqrt((px - anchor_x) ** 2 + (py - anchor_y) ** 2)
-            if away + grain < abs(anchored):
-                sign = 1 if anchored > 0.0 else -1
-            elif exact:
-                sign = side_of(bends, lists[size], near, sizes[size, 1], nearest, grain)
-        if exact:
-            chains = find_chains(
-                arclets, bends, lists[size], sizes[size, 1], px, py, r, (near, models)
-            )
-            if (chains > 1 or models[0, 5] > 0.0) and (sign == 0 or nearest <= r + grain):
-                chains = 0
-            if sign != 0:
-                value = 0.25 * (c[0] + 2.0 * c[3] + c[1]) - sign * nearest
-                reach = (1.0 + _steepest(triangle)) * r + grain
-                lo, hi, room = value - reach, value + reach, grain
-        if chains == 0 and sizes[size, 1] >= 0 and sign != 0 and depth >= _POINT_DEPTH:
-            spare = _SPARE * max(asked.threshold, low) * 0.5 ** (0.5 * depth)
-            chains = find_points(
-                arclets, bends, lists[size], sizes[size, 1], (px, py, r), spare, near, models
-            )
-            effort += chains // _DEAR
-        if chains > 0:
-            enough = max(asked.threshold, (1.0 + asked.tight) * low)
-            lower, upper, margin = _bound(
-                triangle, c, px, py, sign, chains, models, enough, spare, grain, errors
-            )
-            lo, hi = max(lo, lower), min(hi, upper)
-        if asked.bands.shape[0] > 0:
-            # All that the distance may be on the triangle, as it is 1-Lipschitz.
-            reach = math.sqrt((px - anchor_x) ** 2 + (py - anchor_y) ** 2) + r + grain
-            low_u, high_u = anchored - reach, anchored + reach
-            if exact and sign != 0:
-                low_u = max(low_u, sign * nearest - r - grain)
-                high_u = min(high_u, sign * nearest + r + grain)
-            if not meets(asked, low_u, high_u, c, grain):
-                continue
-            found = seen_in_bands(asked, c, errors, margin, value, room, max(lo, -hi))
-        else:
-            found = seen(errors, margin, value, room)
+        counts, found, bound, spent = _look(bent, anchor, limits, parts, size, low)
+        effort += spent
+        if not counts:
+            continue
         low = max(low, found)
-        bound = max(-lo, hi)
-        good = bound <= max(asked.threshold, (1.0 + asked.tight) * low)
+        good = bound <= max(limits.threshold, (1.0 + limits.tight) * low)
         if depth == 0:
             # If it is not good enough, each half is asked by itself.
-            if good and low <= asked.enough:
-                lows[:] = np.maximum(lows, found)
-                highs[:] = bound
-                brackets.counts[k, :] = True
+            if good and low <= limits.enough:
+                for h in range(2):
+                    lows[h], highs[h] = max(lows[h], found), bound
+                    brackets.counts[k, h] = True
                 continue
         else:
             lows[half] = low
             brackets.counts[k, half] = True
-            passed_on = bound == np.inf and (depth > asked.patience or sizes[size, 1] < 0)
-            if low > asked.enough:
+            passed_on = bound == np.inf and (depth > limits.patience or sizes[size, 1] < 0)
+            if low > limits.enough:
                 highs[half] = np.inf
                 continue
             if passed_on and brackets.open_count[0] < brackets.open_from.shape[0]:
                 place = brackets.open_count[0]
                 brackets.open_count[0] += 1
                 brackets.open_from[place] = 2 * k + half
-                brackets.open_triangles[place] = triangle
+                for e in range(12):
+                    brackets.open_triangles[place, e] = parts.triangles[size, e]
                 continue
-            if good or depth == _DEPTH or effort > asked.effort:
+            if good or depth == _DEPTH or effort > limits.effort:
                 highs[half] = max(highs[half], bound)
                 continue
-        _halve(parts, size, size + 1)
-        sizes[size, 0] = depth + 1
-        sizes[size + 1] = sizes[size]
-        if depth == 0:
-            sizes[size + 1, 2] = 1
-        if sizes[size, 1] > 0:
-            lists[size + 1, : sizes[size, 1]] = lists[size, : sizes[size, 1]]
+        _split(parts, size)
         size += 2
 
 
 @uncounted
-def _halve(parts: Floats, at: int, other: int) -> None:
-    """Put one half of triangle ``at`` in its place and the other one in place ``other``."""
-    ax, ay, bx, by, cx, cy, aa, bb, cc, ab, bc, ca = parts[at]
-    mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
-    am, mb, mc = 0.5 * (aa + ab), 0.5 * (ab + bb), 0.5 * (ca + bc)
-    mm = 0.5 * (am + mb)
-    parts[at] = (cx, cy, ax, ay, mx, my, cc, aa, mm, ca, am, mc)
-    parts[other] = (bx, by, cx, cy, mx, my, bb, cc, mm, bc, mc, mb)
+def _look(
+    bent: Bent, anchor: Floats, limits: Limits, parts: Parts, at: int, low: float
+) -> tuple[bool, float, float, int]:
+    """What is to be known of the error on one part, of which it is known to be at least low.
+
+    Whether it counts for the bands, what the error is at least and at most there, and the effort.
+    """
+    triangle, c, ids = parts.triangles[at], parts.triangles[at, 6:], parts.lists[at]
+    errors, near, models = parts.errors, parts.near, parts.models
+    depth, count = parts.sizes[at, 0], parts.sizes[at, 1]
+    grain = _GRAIN * (limits.largest + abs(anchor[2]))
+    px, py = 0.5 * (triangle[0] + triangle[2]), 0.5 * (triangle[1] + triangle[3])
+    r = _radius(triangle, px, py)
+    disk = (px, py, r)
+    away = math.sqrt((px - anchor[0]) ** 2 + (py - anchor[1]) ** 2)
+    exact = False
+    nearest, spare, sign, chains, effort = 0.0, 0.0, 0, 0, 0
+    lo, hi = -np.inf, np.inf
+    value, room, margin = 0.0, np.inf, np.inf
+    for v in range(3):
+        errors[v] = 0.0
+    if count >= 0:
+        count, nearest, exact = gather(bent.arcs, bent.rows, bent.second, ids, count, disk, near)
+        parts.sizes[at, 1] = count
+        if away + grain < abs(anchor[2]):
+            sign = 1 if anchor[2] > 0.0 else -1
+        elif exact:
+            sign = side_of(bent, ids, count, near, nearest, grain)
+    if exact:
+        chains = find_chains(bent, ids, count, disk, near, models)
+        if (chains > 1 or models[0, 5] > 0.0) and (sign == 0 or nearest <= r + grain):
+            chains = 0
+        if sign != 0:
+            value = 0.25 * (c[0] + 2.0 * c[3] + c[1]) - sign * nearest
+            reach = (1.0 + _steepest(triangle)) * r + grain
+            lo, hi, room = value - reach, value + reach, grain
+    if chains == 0 and count >= 0 and sign != 0 and depth >= _POINT_DEPTH:
+        spare = _SPARE * max(limits.threshold, low) * 0.5 ** (0.5 * depth)
+        chains = find_points(bent, ids, count, disk, spare, near, models)
+        effort = chains // _DEAR
+    if chains > 0:
+        enough = max(limits.threshold, (1.0 + limits.tight) * low)
+        lower, upper, margin = _bound(triangle, disk, sign, chains, (enough, spare, grain), parts)
+        lo, hi = max(lo, lower), min(hi, upper)
+    if limits.bands.shape[0] == 0:
+        return True, seen(errors, margin, value, room), max(-lo, hi), effort
+    # All that the distance may be on the triangle, as it is 1-Lipschitz.
+    reach = away + r + grain
+    low_u, high_u = anchor[2] - reach, anchor[2] + reach
+    if exact and sign != 0:
+        low_u = max(low_u, sign * nearest - r - grain)
+        high_u = min(high_u, sign * nearest + r + grain)
+    if not meets(limits.bands, limits.around, low_u, high_u, c, grain):
+        return False, 0.0, np.inf, effort
+    asked = c, errors, margin, value, room, max(lo, -hi)
+    found = seen_in_bands(limits.bands, limits.around, *asked)
+    return True, found, max(-lo, hi), effort
 
 
 @uncounted
-def _listed(tree: Floats, kept: Ints, ids: Ints) -> int:
-    """Fill the arclets under some nodes; how many they are, -1 if they are too many."""
+def _split(parts: Parts, at: int) -> None:
+    """Put one half of a part in its place and the other one after it."""
+    triangles, sizes, lists = parts.triangles, parts.sizes, parts.lists
+    _halve(triangles, at, at + 1)
+    depth, count = sizes[at, 0], sizes[at, 1]
+    sizes[at, 0] = depth + 1
+    sizes[at + 1, 0], sizes[at + 1, 1] = depth + 1, count
+    sizes[at + 1, 2] = 1 if depth == 0 else sizes[at, 2]
+    for j in range(count):
+        lists[at + 1, j] = lists[at, j]
+
+
+@uncounted
+def _halve(triangles: Floats, at: int, other: int) -> None:
+    """Put one half of triangle ``at`` in its place and the other one in place ``other``."""
+    t, u = triangles[at], triangles[other]
+    ax, ay, bx, by, cx, cy = t[0], t[1], t[2], t[3], t[4], t[5]
+    aa, bb, cc, ab, bc, ca = t[6], t[7], t[8], t[9], t[10], t[11]
+    mx, my = 0.5 * (ax + bx), 0.5 * (ay + by)
+    am, mb, mc = 0.5 * (aa + ab), 0.5 * (ab + bb), 0.5 * (ca + bc)
+    mm = 0.5 * (am + mb)
+    t[0], t[1], t[2], t[3], t[4], t[5] = cx, cy, ax, ay, mx, my
+    t[6], t[7], t[8], t[9], t[10], t[11] = cc, aa, mm, ca, am, mc
+    u[0], u[1], u[2], u[3], u[4], u[5] = bx, by, cx, cy, mx, my
+    u[6], u[7], u[8], u[9], u[10], u[11] = bb, cc, mm, bc, mc, mb
+
+
+@uncounted
+def _listed(tree: Floats, nodes: Ints, start: int, stop: int, lists: Ints) -> int:
+    """Fill the first list with arclets under some nodes; how many, -1 if they are too many."""
     count = 0
-    for node in kept:
-        first, end = int(tree[node, 6]), int(tree[node, 7])
+    for k in range(start, stop):
+        first, end = int(tree[nodes[k], 6]), int(tree[nodes[k], 7])
         if count + end - first > _MOST:
             return -1
         for i in range(first, end):
-            ids[count] = i
+            lists[0, count] = i
             count += 1
     return count
 
@@ -262,43 +283,42 @@ def _steepest(triangle: Floats) -> float:
     ux, uy = triangle[0] - triangle[4], triangle[1] - triangle[5]
     vx, vy = triangle[2] - triangle[4], triangle[3] - triangle[5]
     scale = 2.0 / abs(ux * vy - uy * vx)
-    steepest = 0.0
-    for pair in (
-        (c[0] - c[5], c[3] - c[5]),
-        (c[3] - c[4], c[1] - c[4]),
-        (c[5] - c[2], c[4] - c[2]),
-    ):
-        # The gradient g has g . u = 2 pair[0] and g . v = 2 pair[1].
-        x, y = pair[0] * vy - pair[1] * uy, pair[1] * ux - pair[0] * vx
-        steepest = max(steepest, x * x + y * y)
+    steepest = max(0.0, _squared(c[0] - c[5], c[3] - c[5], ux, uy, vx, vy))
+    steepest = max(steepest, _squared(c[3] - c[4], c[1] - c[4], ux, uy, vx, vy))
+    steepest = max(steepest, _squared(c[5] - c[2], c[4] - c[2], ux, uy, vx, vy))
     return float(scale * math.sqrt(steepest))
 
 
-@kernel
+@uncounted
+def _squared(in_u: float, in_v: float, ux: float, uy: float, vx: float, vy: float) -> float:
+    """The square of a vector g, to scale, with g . u = 2 in_u and g . v = 2 in_v."""
+    x, y = in_u * vy - in_v * uy, in_v * ux - in_u * vx
+    return x * x + y * y
+
+
+@uncounted
 def _bound(
     triangle: Floats,
-    c: Floats,
-    px: float,
-    py: float,
+    disk: tuple[float, float, float],
     sign: int,
     chains: int,
-    models: Floats,
-    enough: float,
-    spare: float,
-    grain: float,
-    errors: Floats,
+    margins: tuple[float, float, float],
+    parts: Parts,
 ) -> tuple[float, float, float]:
     """Lower and upper bound of the error on a triangle, and the margin of those at its corners.
 
-    These are filled into ``errors``. The coefficients of each chain's difference are put behind
-    its model, in models[:, 6:].
+    These are filled into ``parts.errors``. The coefficients of each chain's difference are put
+    behind its model, in models[:, 6:]. ``margins`` are what is good enough, what the models may
+    miss, and rounding.
     """
+    c, models, errors = triangle[6:], parts.models, parts.errors
+    px, py, _ = disk
+    enough, spare, grain = margins
     single = chains == 1 and models[0, 5] == 0.0
     scale = 1.0 if single else float(sign)
     ax, ay = triangle[2] - px, triangle[3] - py
     cx, cy = triangle[4] - px, triangle[5] - py
-    lower, upper = -np.inf, -np.inf
-    most_rest = 0.0
+    lower, upper, most_rest = -np.inf, -np.inf, 0.0
     for m in range(chains):
         u, gx, gy, k, rest = models[m, 0], models[m, 1], models[m, 2], models[m, 3], models[m, 4]
         if not single and u < 0.0:
@@ -313,10 +333,8 @@ def _bound(
         q[3] = scale * c[3] - (u - 0.5 * k * a * a)
         q[4] = scale * c[4] - (u + 0.5 * (step_a + step_c) + 0.5 * k * a * b)
         q[5] = scale * c[5] - (u + 0.5 * (step_c - step_a) - 0.5 * k * a * b)
-        least = min(q[0], q[1], q[2], q[3], q[4], q[5])
-        most = max(q[0], q[1], q[2], q[3], q[4], q[5])
-        lower = max(lower, least - rest)
-        upper = max(upper, most + rest)
+        lower = max(lower, least_of(q) - rest)
+        upper = max(upper, most_of(q) + rest)
         most_rest = max(most_rest, rest)
     for v in range(3):
         value = -np.inf
@@ -324,25 +342,26 @@ def _bound(
             value = max(value, models[m, 6 + v])
         errors[v] = scale * value
     if chains > 1 and -lower > enough:
-        lower = max(lower, _mean(models, chains, enough))
+        lower = max(lower, _mean(models, chains, enough, parts.mean))
     upper += spare
     if scale < 0.0:
         lower, upper = -upper, -lower
     return lower - grain, upper + grain, most_rest + spare + grain
 
 
-@kernel
-def _mean(models: Floats, chains: int, enough: float) -> float:
+@uncounted
+def _mean(models: Floats, chains: int, enough: float, mean: Floats) -> float:
     """A lower bound of the largest of all differences on a triangle: that of a mean of some (2.10).
 
     To the best one, another is added that is large where the mean is smallest, a few times.
     """
     one, best = 0, -np.inf
     for m in range(chains):
-        least = models[m, 6:].min()
+        least = least_of(models[m, 6:])
         if least > best:
             one, best = m, least
-    mean = models[one, 6:].copy()
+    for v in range(6):
+        mean[v] = models[one, 6 + v]
     rest = models[one, 4]
     bound = best - rest
     for _ in range(_ADDED):
@@ -361,7 +380,7 @@ def _mean(models: Floats, chains: int, enough: float) -> float:
         rest = max(rest, models[other, 4])
         for v in range(6):
             mean[v] = share * mean[v] + (1.0 - share) * q[v]
-        bound = max(bound, mean.min() - rest)
+        bound = max(bound, least_of(mean) - rest)
     return float(bound)
 
 

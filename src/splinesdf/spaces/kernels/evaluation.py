@@ -22,6 +22,7 @@ import numpy as np
 
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
+from splinesdf.spaces.tables import Block, Evaluated
 
 # Points a block. More: the fetched rows, 64 bytes each, leave the first-level cache; fewer: the
 # fetching loop ends before memory is busy.
@@ -29,16 +30,8 @@ _BLOCK = 256
 
 
 @kernel
-def evaluate_grid(
-    x: Floats,
-    y: Floats,
-    powers: Floats,
-    points: Floats,
-    value: Floats,
-    gradient: Floats,
-    hessian: Floats,
-) -> int:
-    """Fill values, and gradients and Hessians where their arrays are not empty, on a grid.
+def evaluate_grid(x: Floats, y: Floats, powers: Floats, evaluated: Evaluated) -> int:
+    """Fill values, gradients and Hessians as far as they are asked for, on a grid.
 
     Parameters
     ----------
@@ -46,37 +39,52 @@ def evaluate_grid(
         Increasing grid lines.
     powers : ndarray, shape (m n, 8)
         a0 ... a7 of each cell.
-    points : ndarray, shape (p, 2)
-    value, gradient, hessian : ndarray, shapes (p,), (p or 0, 2), (p or 0, 3)
-        NaN outside the domain. The Hessian as xx, xy, yy; it needs the gradient.
+    evaluated : Evaluated
+        NaN is filled in outside the domain.
 
     Returns
     -------
     int
         How many points are outside the domain or not finite.
     """
-    m, n = x.shape[0] - 1, y.shape[0] - 1
-    scale_x, scale_y = m / (x[m] - x[0]), n / (y[n] - y[0])
-    cells = np.empty(_BLOCK, dtype=np.int64)
-    local, rows = np.empty((4, _BLOCK)), np.empty((_BLOCK, 8))
+    points = evaluated.points
+    block = Block(np.empty(_BLOCK, dtype=np.int64), np.empty((4, _BLOCK)), np.empty((_BLOCK, 8)))
     outside = 0
     for first in range(0, points.shape[0], _BLOCK):
         count = min(_BLOCK, points.shape[0] - first)
-        for k in range(count):
-            px, py = points[first + k, 0], points[first + k, 1]
-            if not (x[0] <= px <= x[m] and y[0] <= py <= y[n]):  # NaN lands here too
-                outside += 1
-                cells[k] = 0
-                local[:, k] = np.nan
-                continue
-            i, j = _interval(x, m, scale_x, px), _interval(y, n, scale_y, py)
-            cells[k] = i * n + j
-            width, height = x[i + 1] - x[i], y[j + 1] - y[j]
-            local[2, k], local[3, k] = 1.0 / width, 1.0 / height
-            local[0, k] = (px - 0.5 * (x[i] + x[i + 1])) * local[2, k]
-            local[1, k] = (py - 0.5 * (y[j] + y[j + 1])) * local[3, k]
-        _fetch_and_compute(powers, cells, local, rows, first, count, value, gradient, hessian)
+        outside += _locate(x, y, points, first, count, block)
+        _fetch_and_compute(powers, block, first, count, evaluated)
     return outside
+
+
+@uncounted
+def _locate(x: Floats, y: Floats, points: Floats, first: int, count: int, block: Block) -> int:
+    """Fill the cells of points, and where in them they are; how many are outside the domain."""
+    cells, local = block.cells, block.local
+    m, n = x.shape[0] - 1, y.shape[0] - 1
+    scale_x, scale_y = m / (x[m] - x[0]), n / (y[n] - y[0])
+    outside = 0
+    for k in range(count):
+        px, py = points[first + k, 0], points[first + k, 1]
+        if not (x[0] <= px <= x[m] and y[0] <= py <= y[n]):  # NaN lands here too
+            outside += 1
+            _leave_out(block, k)
+            continue
+        i, j = _interval(x, m, scale_x, px), _interval(y, n, scale_y, py)
+        cells[k] = i * n + j
+        width, height = x[i + 1] - x[i], y[j + 1] - y[j]
+        local[2, k], local[3, k] = 1.0 / width, 1.0 / height
+        local[0, k] = (px - 0.5 * (x[i] + x[i + 1])) * local[2, k]
+        local[1, k] = (py - 0.5 * (y[j] + y[j + 1])) * local[3, k]
+    return outside
+
+
+@uncounted
+def _leave_out(block: Block, k: int) -> None:
+    """Have NaN computed for a point."""
+    block.cells[k] = 0
+    for e in range(4):
+        block.local[e, k] = np.nan
 
 
 @uncounted
@@ -97,23 +105,16 @@ def _interval(lines: Floats, count: int, scale: float, value: float) -> int:
 
 @kernel
 def evaluate_tree(
-    domain: Floats,
-    entry: Ints,
-    walk: Ints,
-    powers: Floats,
-    points: Floats,
-    value: Floats,
-    gradient: Floats,
-    hessian: Floats,
+    domain: Floats, entry: Ints, walk: Ints, powers: Floats, evaluated: Evaluated
 ) -> int:
-    """Fill values, and gradients and Hessians where their arrays are not empty, on a quadtree.
+    """Fill values, gradients and Hessians as far as they are asked for, on a quadtree.
 
     Parameters
     ----------
     domain : ndarray, shape (4,)
     entry, walk : ndarray, shapes (m, n), (n_nodes,)
         As `fill_ways` fills them.
-    powers, points, value, gradient, hessian : ndarray
+    powers, evaluated : ndarray, Evaluated
         As in `evaluate_grid`.
 
     Returns
@@ -121,57 +122,85 @@ def evaluate_tree(
     int
         How many points are outside the domain or not finite.
     """
+    points = evaluated.points
     m, n = entry.shape
     entries = entry.reshape(m * n)
-    scale_x, scale_y = m / (domain[2] - domain[0]), n / (domain[3] - domain[1])
-    cells = np.empty(_BLOCK, dtype=np.int64)
-    local, rows = np.empty((4, _BLOCK)), np.empty((_BLOCK, 8))
+    scales = m / (domain[2] - domain[0]), n / (domain[3] - domain[1])
+    block = Block(np.empty(_BLOCK, dtype=np.int64), np.empty((4, _BLOCK)), np.empty((_BLOCK, 8)))
     outside = 0
     for first in range(0, points.shape[0], _BLOCK):
         count = min(_BLOCK, points.shape[0] - first)
+        outside += _enter(domain, (m, n), scales, points[first : first + count], block)
         for k in range(count):
-            px, py = points[first + k, 0], points[first + k, 1]
-            if not (domain[0] <= px <= domain[2] and domain[1] <= py <= domain[3]):
-                outside += 1
-                cells[k] = 0
-                local[0, k] = np.nan
-                continue
-            local[0, k], local[1, k] = (px - domain[0]) * scale_x, (py - domain[1]) * scale_y
-            i, j = min(int(local[0, k]), m - 1), min(int(local[1, k]), n - 1)
-            cells[k] = i * n + j
-        for k in range(count):
-            cells[k] = entries[np.uint64(cells[k])]
-        for k in range(count):
-            u, v, node, factor = local[0, k], local[1, k], cells[k], 1.0
-            if u != u:
-                cells[k] = 0
-                local[:, k] = np.nan
-                continue
-            if node < 0:
-                up = ~node & 31
-                node = ~node >> 5
-                factor = 1.0 / (1 << up)
-                u, v = u * factor, v * factor
-                u -= min(math.floor(u), m * factor - 1.0)
-                v -= min(math.floor(v), n * factor - 1.0)
-            else:
-                u -= min(math.floor(u), m - 1.0)
-                v -= min(math.floor(v), n - 1.0)
-                while walk[node] >= 0:
-                    u, v, factor = 2.0 * u, 2.0 * v, 2.0 * factor
-                    node = walk[node]
-                    if u >= 1.0:
-                        u -= 1.0
-                        node += 2
-                    if v >= 1.0:
-                        v -= 1.0
-                        node += 1
-                node = ~walk[node]
-            cells[k] = node
-            local[0, k], local[1, k] = u - 0.5, v - 0.5
-            local[2, k], local[3, k] = scale_x * factor, scale_y * factor
-        _fetch_and_compute(powers, cells, local, rows, first, count, value, gradient, hessian)
+            block.cells[k] = entries[np.uint64(block.cells[k])]
+        _descend(walk, (m, n), scales, count, block)
+        _fetch_and_compute(powers, block, first, count, evaluated)
     return outside
+
+
+@uncounted
+def _enter(
+    domain: Floats,
+    shape: tuple[int, int],
+    scales: tuple[float, float],
+    points: Floats,
+    block: Block,
+) -> int:
+    """Fill places of points in the table of entries, and where they are among them.
+
+    How many are outside the domain.
+    """
+    cells, local = block.cells, block.local
+    m, n = shape
+    outside = 0
+    for k in range(points.shape[0]):
+        px, py = points[k, 0], points[k, 1]
+        if not (domain[0] <= px <= domain[2] and domain[1] <= py <= domain[3]):
+            outside += 1
+            cells[k] = 0
+            local[0, k] = np.nan
+            continue
+        local[0, k], local[1, k] = (px - domain[0]) * scales[0], (py - domain[1]) * scales[1]
+        i, j = min(int(local[0, k]), m - 1), min(int(local[1, k]), n - 1)
+        cells[k] = i * n + j
+    return outside
+
+
+@uncounted
+def _descend(
+    walk: Ints, shape: tuple[int, int], scales: tuple[float, float], count: int, block: Block
+) -> None:
+    """From the entries of points to their cells, and where in them they are."""
+    cells, local = block.cells, block.local
+    m, n = shape
+    for k in range(count):
+        u, v, node, factor = local[0, k], local[1, k], cells[k], 1.0
+        if u != u:
+            _leave_out(block, k)
+            continue
+        if node < 0:
+            up = ~node & 31
+            node = ~node >> 5
+            factor = 1.0 / (1 << up)
+            u, v = u * factor, v * factor
+            u -= min(math.floor(u), m * factor - 1.0)
+            v -= min(math.floor(v), n * factor - 1.0)
+        else:
+            u -= min(math.floor(u), m - 1.0)
+            v -= min(math.floor(v), n - 1.0)
+            while walk[node] >= 0:
+                u, v, factor = 2.0 * u, 2.0 * v, 2.0 * factor
+                node = walk[node]
+                if u >= 1.0:
+                    u -= 1.0
+                    node += 2
+                if v >= 1.0:
+                    v -= 1.0
+                    node += 1
+            node = ~walk[node]
+        cells[k] = node
+        local[0, k], local[1, k] = u - 0.5, v - 0.5
+        local[2, k], local[3, k] = scales[0] * factor, scales[1] * factor
 
 
 @kernel
@@ -205,17 +234,11 @@ def fill_ways(
 
 @uncounted
 def _fetch_and_compute(
-    powers: Floats,
-    cells: Ints,
-    local: Floats,
-    rows: Floats,
-    first: int,
-    count: int,
-    value: Floats,
-    gradient: Floats,
-    hessian: Floats,
+    powers: Floats, block: Block, first: int, count: int, evaluated: Evaluated
 ) -> None:
-    """The two last loops of a block: ``local`` has s, t and the inverse sides of the cell."""
+    """The two last loops of a block, whose cells and places in them are known."""
+    cells, local, rows = block.cells, block.local, block.rows
+    value, gradient, hessian = evaluated.value, evaluated.gradient, evaluated.hessian
     for k in range(count):
         # Unsigned, it needs no check for a negative index, which would hold up the fetching.
         cell = np.uint64(cells[k])
@@ -280,14 +303,21 @@ def evaluate_lattice(
     value : ndarray, shape (ny, nx)
     """
     for cell in range(frames.shape[0]):
-        frame, a = frames[cell], powers[cell]
-        for j in range(rows[cell, 0], rows[cell, 1]):
-            t = (y[j] - frame[1]) * frame[3]
-            constant, slope = a[0] + t * (a[2] + a[5] * t), a[1] + a[4] * t
-            for i in range(columns[cell, 0], columns[cell, 1]):
-                s = (x[i] - frame[0]) * frame[2]
-                right = s - t if s > t else 0.0
-                left = s + t if s > -t else 0.0
-                value[j, i] = (
-                    constant + s * (slope + a[3] * s) + a[6] * right * right + a[7] * left * left
-                )
+        _fill_cell(frames[cell], powers[cell], columns[cell], rows[cell], x, y, value)
+
+
+@uncounted
+def _fill_cell(
+    frame: Floats, a: Floats, columns: Ints, rows: Ints, x: Floats, y: Floats, value: Floats
+) -> None:
+    """Fill values at the nodes of a lattice that lie in one cell."""
+    for j in range(rows[0], rows[1]):
+        t = (y[j] - frame[1]) * frame[3]
+        constant, slope = a[0] + t * (a[2] + a[5] * t), a[1] + a[4] * t
+        for i in range(columns[0], columns[1]):
+            s = (x[i] - frame[0]) * frame[2]
+            right = s - t if s > t else 0.0
+            left = s + t if s > -t else 0.0
+            value[j, i] = (
+                constant + s * (slope + a[3] * s) + a[6] * right * right + a[7] * left * left
+            )

@@ -11,6 +11,8 @@ the nodes of the domain beside it, so that every function that reaches into a ce
 
 from __future__ import annotations
 
+import numpy as np
+
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
 from splinesdf.spaces.tables import Nodes
@@ -84,8 +86,8 @@ def mark(nodes: Nodes, targets: Ints, split: Bools) -> bool:
     """
     again = False
     m, n = nodes.shape[0], nodes.shape[1]
-    for k in range(targets.shape[0]):
-        level, i, j = targets[k, 0], targets[k, 1], targets[k, 2]
+    for target in range(targets.shape[0]):
+        level, i, j = targets[target, 0], targets[target, 1], targets[target, 2]
         if not (0 <= i < m << level and 0 <= j < n << level):
             continue
         node = _ancestor(nodes, level, i, j)
@@ -93,7 +95,8 @@ def mark(nodes: Nodes, targets: Ints, split: Bools) -> bool:
             continue
         again = again or nodes.level[node] < level
         split[node] = True
-        for other in nodes.near[node]:
+        for k in range(9):
+            other = nodes.near[node, k]
             if other >= 0 and nodes.child[other] < 0 and _outside(nodes, other):
                 split[other] = True
     return again
@@ -145,8 +148,7 @@ def ordinates(nodes: Nodes, cells: Ints, values: Floats, result: Floats) -> None
     """
     for place in range(cells.shape[0]):
         node = cells[place]
-        c = _block(nodes, values, node)
-        c00, c01, c02, c10, c11, c12, c20, c21, c22 = c
+        c00, c01, c02, c10, c11, c12, c20, c21, c22 = _block(nodes, values, node)
         result[place, 0] = 0.25 * (c00 + c01 + c10 + c11)
         result[place, 1] = 0.25 * (c10 + c11 + c20 + c21)
         result[place, 2] = 0.25 * (c01 + c02 + c11 + c12)
@@ -162,21 +164,24 @@ def _block(
     nodes: Nodes, values: Floats, node: int
 ) -> tuple[float, float, float, float, float, float, float, float, float]:
     """The coefficients of the 3 x 3 cells around a node."""
+    # Typed numbers: Numba compiles a callee for each literal. Not an array that a loop fills:
+    # the compiler would add numbers from memory in another order, with other last bits.
     return (
-        _near(nodes, values, node, 0),
-        _near(nodes, values, node, 1),
-        _near(nodes, values, node, 2),
-        _near(nodes, values, node, 3),
-        _near(nodes, values, node, 4),
-        _near(nodes, values, node, 5),
-        _near(nodes, values, node, 6),
-        _near(nodes, values, node, 7),
-        _near(nodes, values, node, 8),
+        _near(nodes, values, node, np.int64(0)),
+        _near(nodes, values, node, np.int64(1)),
+        _near(nodes, values, node, np.int64(2)),
+        _near(nodes, values, node, np.int64(3)),
+        _near(nodes, values, node, np.int64(4)),
+        _near(nodes, values, node, np.int64(5)),
+        _near(nodes, values, node, np.int64(6)),
+        _near(nodes, values, node, np.int64(7)),
+        _near(nodes, values, node, np.int64(8)),
     )
 
 
 @uncounted
-def _near(nodes: Nodes, values: Floats, node: int, k: int) -> float:
+def _near(nodes: Nodes, values: Floats, node: int, k: np.int64) -> float:
+    """The coefficient of the k-th of the 3 x 3 cells around a node."""
     other = nodes.near[node, k]
     if other >= 0:
         return float(values[other])

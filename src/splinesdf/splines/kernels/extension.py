@@ -26,6 +26,8 @@ import numpy as np
 
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
+from splinesdf.spaces.tables import Evaluated
+from splinesdf.splines.tables import Border
 
 # Iterations of Newton or bisection at most: bisection halves an interval to rounding in 60.
 _STEPS = 64
@@ -39,137 +41,146 @@ _TINY = 1e-150
 
 
 @kernel
-def fill_drops(starts: Ints, edges: Floats, drops: Floats) -> None:
-    """Fill how far s falls below the chord between the ends of a node's edges.
-
-    Parameters
-    ----------
-    starts : ndarray, shape (5,)
-        Side ``k`` has the knots ``starts[k]`` to ``starts[k + 1] - 1``.
-    edges : ndarray, shape (n_knots, 3)
-        Of each knot: where it is from the side's start, s there, and the ordinate in the middle of
-        the edge that begins there.
-    drops : ndarray, shape (4, n_nodes)
-    """
-    first, last = np.empty(_DEPTH, dtype=np.int64), np.empty(_DEPTH, dtype=np.int64)
-    nodes = np.empty(_DEPTH, dtype=np.int64)
+def fill_drops(border: Border) -> None:
+    """Fill how far s falls below the chord between the ends of a node's edges."""
+    starts, edges, drops = border.starts, border.edges, border.drops
+    nodes = np.empty((_DEPTH, 3), dtype=np.int64)  # first and last knot, number
     for side in range(4):
-        first[0], last[0], nodes[0], open_count = starts[side], starts[side + 1] - 1, 0, 1
+        _open(nodes, 0, starts[side], starts[side + 1] - 1, 0)
+        open_count = 1
         while open_count > 0:
             open_count -= 1
-            i, j, node = first[open_count], last[open_count], nodes[open_count]
-            slope = (edges[j, 1] - edges[i, 1]) / (edges[j, 0] - edges[i, 0])
-            drop = 0.0
-            for k in range(i, j):
-                along = edges[k, 0] - edges[i, 0]
-                drop = max(drop, edges[i, 1] + slope * along - edges[k, 1])
-                along += 0.5 * (edges[k + 1, 0] - edges[k, 0])
-                # The middle ordinate is where the end tangents meet: the curve keeps halfway.
-                share = 0.5 if j == i + 1 else 1.0
-                drop = max(drop, share * (edges[i, 1] + slope * along - edges[k, 2]))
-            drops[side, node] = drop
+            i, j, node = nodes[open_count, 0], nodes[open_count, 1], nodes[open_count, 2]
+            drops[side, node] = _drop(edges, i, j)
             if j > i + 1:
                 middle = (i + j) // 2
-                first[open_count], last[open_count], nodes[open_count] = i, middle, 2 * node + 1
-                open_count += 1
-                first[open_count], last[open_count], nodes[open_count] = middle, j, 2 * node + 2
-                open_count += 1
+                _open(nodes, open_count, i, middle, 2 * node + 1)
+                _open(nodes, open_count + 1, middle, j, 2 * node + 2)
+                open_count += 2
+
+
+@uncounted
+def _open(nodes: Ints, at: int, first: int, last: int, node: int) -> None:
+    nodes[at, 0], nodes[at, 1], nodes[at, 2] = first, last, node
+
+
+@uncounted
+def _drop(edges: Floats, i: int, j: int) -> float:
+    """How far s falls below the chord from one knot to another."""
+    slope = (edges[j, 1] - edges[i, 1]) / (edges[j, 0] - edges[i, 0])
+    drop = 0.0
+    for k in range(i, j):
+        along = edges[k, 0] - edges[i, 0]
+        drop = max(drop, edges[i, 1] + slope * along - edges[k, 1])
+        along += 0.5 * (edges[k + 1, 0] - edges[k, 0])
+        # The middle ordinate is where the end tangents meet: the curve keeps halfway.
+        share = 0.5 if j == i + 1 else 1.0
+        drop = max(drop, share * (edges[i, 1] + slope * along - edges[k, 2]))
+    return drop
 
 
 @kernel
-def extend(
-    domain: Floats,
-    starts: Ints,
-    edges: Floats,
-    drops: Floats,
-    points: Floats,
-    value: Floats,
-    gradient: Floats,
-    hessian: Floats,
-) -> None:
-    """Fill values, and gradients and Hessians where their arrays are not empty, outside the domain.
+def extend(domain: Floats, border: Border, evaluated: Evaluated) -> None:
+    """Fill values, gradients and Hessians as far as they are asked for, outside the domain.
 
     Parameters
     ----------
     domain : ndarray, shape (4,)
-    starts, edges, drops : ndarray
-        As for `fill_drops`.
-    points : ndarray, shape (p, 2)
-        Those in the domain and those that are not finite are passed over.
-    value, gradient, hessian : ndarray, shapes (p,), (p or 0, 2), (p or 0, 3)
+    border : Border
+        With what `fill_drops` fills in.
+    evaluated : Evaluated
+        Points in the domain and those that are not finite are passed over.
     """
-    first, last = np.empty(_DEPTH, dtype=np.int64), np.empty(_DEPTH, dtype=np.int64)
-    nodes, sides = np.empty(_DEPTH, dtype=np.int64), np.empty(_DEPTH, dtype=np.int64)
-    bounds, foot = np.empty(_DEPTH), np.empty(3)
+    points, value, gradient = evaluated.points, evaluated.value, evaluated.gradient
+    nodes, bounds = np.empty((_DEPTH, 4), dtype=np.int64), np.empty(_DEPTH)
     for k in range(points.shape[0]):
         x, y = points[k, 0], points[k, 1]
         if domain[0] <= x <= domain[2] and domain[1] <= y <= domain[3]:
             continue
         if not (math.isfinite(x) and math.isfinite(y)):
             continue
-        best, best_side, at, bend, free = np.inf, 0, 0.0, 0.0, False
-        open_count = 4
-        for side in range(4):
-            nodes[side], sides[side] = 0, side
-            first[side], last[side] = starts[side], starts[side + 1] - 1
-            a, b = _seen_from(domain, side, x, y)
-            bounds[side] = _lower_bound(edges, first[side], last[side], drops[side, 0], a, b)
-        while open_count > 0:
-            open_count -= 1
-            if bounds[open_count] >= best:
-                continue
-            i, j, node, side = (
-                first[open_count],
-                last[open_count],
-                nodes[open_count],
-                sides[open_count],
-            )
-            a, b = _seen_from(domain, side, x, y)
-            if j == i + 1:
-                found = _least_on_edge(edges, i, a, b, foot)
-                if found < best:
-                    best, best_side, at, bend, free = found, side, foot[0], foot[1], foot[2] > 0.0
-                continue
-            middle = (i + j) // 2
-            low = _lower_bound(edges, i, middle, drops[side, 2 * node + 1], a, b)
-            high = _lower_bound(edges, middle, j, drops[side, 2 * node + 2], a, b)
-            # The half with the lower bound goes on top, so that it comes first.
-            for turn in range(2):
-                left = (low >= high) == (turn == 0)
-                nodes[open_count] = 2 * node + (1 if left else 2)
-                first[open_count] = i if left else middle
-                last[open_count] = middle if left else j
-                bounds[open_count] = low if left else high
-                sides[open_count] = side
-                open_count += 1
-        value[k] = best
-        if gradient.shape[0] == 0:
+        value[k], side, at, bend, free = _closest(domain, border, x, y, nodes, bounds)
+        if gradient.shape[0] > 0:
+            _fill_derivatives(domain, (x, y), (side, at, bend, free), k, evaluated)
+
+
+@uncounted
+def _closest(
+    domain: Floats, border: Border, x: float, y: float, nodes: Ints, bounds: Floats
+) -> tuple[float, int, float, float, bool]:
+    """The least s + distance; on which side, where there, s's second derivative; if in an edge.
+
+    There is room in ``nodes`` for the nodes still to be looked at: first and last knot, number and
+    side.
+    """
+    starts, edges, drops = border.starts, border.edges, border.drops
+    best, best_side, at, bend, free = np.inf, 0, 0.0, 0.0, False
+    open_count = 4
+    for side in range(4):
+        _open(nodes, side, starts[side], starts[side + 1] - 1, 0)
+        nodes[side, 3] = side
+        a, b = _seen_from(domain, side, x, y)
+        bounds[side] = _lower_bound(edges, nodes[side, 0], nodes[side, 1], drops[side, 0], a, b)
+    while open_count > 0:
+        open_count -= 1
+        if bounds[open_count] >= best:
             continue
-        upright = best_side % 2 == 1
-        line = domain[2] if best_side == 1 else domain[0]
-        if not upright:
-            line = domain[3] if best_side == 2 else domain[1]
-        along, up = x - domain[0], y - domain[1]
-        dx, dy = (x - line, up - at) if upright else (along - at, y - line)
-        distance = _length(dx, dy)
-        if distance < _TINY:
-            dx, dy, distance = dx / _TINY, dy / _TINY, _TINY
-            scale = 1.0 / _length(dx, dy)
-        else:
-            scale = 1.0 / distance
-        dx, dy = dx * scale, dy * scale
-        gradient[k, 0], gradient[k, 1] = dx, dy
-        if hessian.shape[0] > 0:
-            # Across (dx, dy), by the unit vector (-dy, dx); zero along it.
-            bent = 1.0 / distance
-            turn_rate = dx if upright else -dy
-            if free and bend * distance + turn_rate * turn_rate > 0.0:
-                bent = bend / (bend * distance + turn_rate * turn_rate)
-            hessian[k, 0], hessian[k, 1], hessian[k, 2] = (
-                bent * dy * dy,
-                -bent * dx * dy,
-                bent * dx * dx,
-            )
+        i, j = nodes[open_count, 0], nodes[open_count, 1]
+        node, side = nodes[open_count, 2], nodes[open_count, 3]
+        a, b = _seen_from(domain, side, x, y)
+        if j == i + 1:
+            found, t, curved, inner = _least_on_edge(edges, i, a, b)
+            if found < best:
+                best, best_side, at, bend, free = found, side, t, curved, inner
+            continue
+        middle = (i + j) // 2
+        low = _lower_bound(edges, i, middle, drops[side, 2 * node + 1], a, b)
+        high = _lower_bound(edges, middle, j, drops[side, 2 * node + 2], a, b)
+        # The half with the lower bound goes on top, so that it comes first.
+        left = open_count if low >= high else open_count + 1
+        right = 2 * open_count + 1 - left
+        _open(nodes, left, i, middle, 2 * node + 1)
+        _open(nodes, right, middle, j, 2 * node + 2)
+        nodes[left, 3], nodes[right, 3] = side, side
+        bounds[left], bounds[right] = low, high
+        open_count += 2
+    return best, best_side, at, bend, free
+
+
+@uncounted
+def _fill_derivatives(
+    domain: Floats,
+    point: tuple[float, float],
+    foot: tuple[int, float, float, bool],
+    k: int,
+    evaluated: Evaluated,
+) -> None:
+    """Fill the gradient, and the Hessian where asked for, of a point whose foot is known."""
+    gradient, hessian = evaluated.gradient, evaluated.hessian
+    (x, y), (side, at, bend, free) = point, foot
+    upright = side % 2 == 1
+    line = domain[2] if side == 1 else domain[0]
+    if not upright:
+        line = domain[3] if side == 2 else domain[1]
+    along, up = x - domain[0], y - domain[1]
+    dx, dy = (x - line, up - at) if upright else (along - at, y - line)
+    distance = _length(dx, dy)
+    if distance < _TINY:
+        dx, dy, distance = dx / _TINY, dy / _TINY, _TINY
+        scale = 1.0 / _length(dx, dy)
+    else:
+        scale = 1.0 / distance
+    dx, dy = dx * scale, dy * scale
+    gradient[k, 0], gradient[k, 1] = dx, dy
+    if hessian.shape[0] > 0:
+        # Across (dx, dy), by the unit vector (-dy, dx); zero along it.
+        bent = 1.0 / distance
+        turn_rate = dx if upright else -dy
+        if free and bend * distance + turn_rate * turn_rate > 0.0:
+            bent = bend / (bend * distance + turn_rate * turn_rate)
+        hessian[k, 0] = bent * dy * dy
+        hessian[k, 1] = -bent * dx * dy
+        hessian[k, 2] = bent * dx * dx
 
 
 @uncounted
@@ -206,10 +217,11 @@ def _lower_bound(edges: Floats, i: int, j: int, drop: float, a: float, b: float)
 
 
 @uncounted
-def _least_on_edge(edges: Floats, i: int, a: float, b: float, foot: Floats) -> float:
+def _least_on_edge(edges: Floats, i: int, a: float, b: float) -> tuple[float, float, float, bool]:
     """The least s + distance between a knot and the next.
 
-    Fills where it is, the second derivative of s, and 1 if it is no end (0 if it is one).
+    And where it is, the second derivative of s, and whether s + distance is level there, as it is
+    anywhere but in an end.
     """
     t0: float = edges[i, 0]
     s0: float = edges[i, 1]
@@ -217,30 +229,29 @@ def _least_on_edge(edges: Floats, i: int, a: float, b: float, foot: Floats) -> f
     length = t1 - t0
     slope, bend = 2.0 * (middle - s0) / length, 2.0 * (s0 - 2.0 * middle + s1) / (length * length)
     r0, r1 = _length(t0 - a, b), _length(t1 - a, b)
-    foot[1] = bend
     if s0 + r0 <= s1 + r1:
         best: float = s0 + r0
-        foot[0] = t0
+        at = t0
         rise = slope + (t0 - a) / r0
     else:
-        best, foot[0] = s1 + r1, t1
+        best, at = s1 + r1, t1
         rise = slope + bend * length + (t1 - a) / r1
-    foot[2] = 1.0 if abs(rise) <= _LEVEL else 0.0
+    free = abs(rise) <= _LEVEL
     low, high = t0, t1
     if bend < 0.0:
         share = 1.0 / (-bend * b) if b > 0.0 else 0.0
         if share <= 1.0:
-            return best
+            return best, at, bend, free
         window = b * math.sqrt(share ** (2.0 / 3.0) - 1.0)
         low, high = max(low, a - window), min(high, a + window)
         if low >= high:
-            return best
+            return best, at, bend, free
     r = _length(low - a, b)
     if slope + bend * (low - t0) + (low - a) / r >= 0.0:
-        return best
+        return best, at, bend, free
     r = _length(high - a, b)
     if slope + bend * (high - t0) + (high - a) / r <= 0.0:
-        return best
+        return best, at, bend, free
     # Where the chord's slope would have it.
     chord = (s1 - s0) / length
     t = a - chord * b / math.sqrt(1.0 - chord * chord) if abs(chord) < 1.0 else 0.5 * (low + high)
@@ -265,5 +276,5 @@ def _least_on_edge(edges: Floats, i: int, a: float, b: float, foot: Floats) -> f
     along = t - t0
     found = s0 + along * (slope + 0.5 * bend * along) + _length(t - a, b)
     if found < best:
-        best, foot[0], foot[2] = found, t, 1.0
-    return best
+        best, at, free = found, t, True
+    return best, at, bend, free

@@ -1,0 +1,17 @@
+"""Named bundles of arrays that the kernels of this folder read."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from splinesdf.ground.arrays import Floats, Ints
+
+
+class Bent(NamedTuple):
+    """What is read of arclets, of how they bend and of how they follow one another."""
+
+    arcs: Floats  # as in `Arclets`
+    following: Ints
+    rows: Floats  # as in `Bends`
+    second: Floats
+    previous: Ints
