@@ -47,7 +47,11 @@ def results() -> Iterator[tuple[str, Iterable[np.ndarray]]]:
             arcs = [ss.as_arcs(c, tolerance=1e-3 * shape.size) for c in found]
             yield f"{name} biarcs {d:.3g}", [c.arcs for c in arcs]
         tolerance = 2e-2 * shape.size
-        wanted = {"all": {}, "band": {"band": (-tolerance, 2 * tolerance)}, "W": {"space": "tensor"}}
+        wanted = {
+            "all": {},
+            "band": {"band": (-tolerance, 2 * tolerance)},
+            "W": {"space": "tensor"},
+        }
         for kind, asked in wanted.items():
             fit = ss.fit(shape, tolerance=tolerance, **asked)  # type: ignore[arg-type]
             spline = fit.spline

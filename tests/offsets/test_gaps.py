@@ -17,7 +17,7 @@ from splinesdf.offsets.kernels.gaps import (
 )
 from splinesdf.offsets.kernels.gather import _apart
 from splinesdf.offsets.kernels.parallels import parallel_point
-from splinesdf.offsets.trimmed import parallels, trimming
+from splinesdf.offsets.trimmed import parallels, parallels_at, walls_at
 from tests.glyphs import glyphs
 from tests.mechanical import parts
 from tests.named_shapes import gamma
@@ -57,10 +57,10 @@ def some_stretch(
     m = random.uniform(half, 1.0 - half)
     at = np.linspace(m - half, m + half, 65)
     points = parallels(shape, np.array([[i, 0]] * 65), at, distance)[:, :2]
-    x, y, tx, ty, _, bend = parallel_point(shape.joints, (i, 0), m, distance)
+    x, y, tx, ty, _, bend = parallel_point(parallels_at(shape, distance), (i, 0), m)
     steps = np.hypot(*np.diff(points, axis=0).T)
     away = np.abs(np.cumsum(np.append(0.0, steps)) - steps[:32].sum())
-    bends = bend_range(trimming(shape, distance, 1.0), (i, 0), bend, 2.0 * half)
+    bends = bend_range(shape.bends.rows, distance, (i, 0), bend, 2.0 * half)
     return Stretch(i, m, half, points, away, (x, y, tx, ty), bends)
 
 
@@ -131,7 +131,7 @@ def test_long_stretches_are_no_nearer_and_no_farther_than_is_said(name: str) -> 
         if not np.isfinite(one.bends).all():
             continue
         x, y, tx, ty = one.middle
-        asked = trimming(shape, distance, 1.0)
+        levels, around = parallels_at(shape, distance), walls_at(shape, distance)
         rounding = 1e-13 * (shape.size + abs(distance))
         walls = np.append(random.integers(count, size=8), np.arange(one.i - 4, one.i + 5) % count)
         for wall in walls.tolist():
@@ -148,9 +148,9 @@ def test_long_stretches_are_no_nearer_and_no_farther_than_is_said(name: str) -> 
                 sizes.append(float((found - least).max()) / one.length)
             ends = ((one.i, 0), one.m - one.half, one.m + one.half)
             most = (max(map(abs, one.bends)), one.length)
-            if _is_nearer_at_its_ends(boundary, shape.joints, asked, ends, wall, most, scratch):
+            if _is_nearer_at_its_ends(levels, around, ends, wall, most, scratch):
                 nearer += 1
-                assert found.max() <= abs(distance) + asked.grain + rounding
+                assert found.max() <= abs(distance) + around.grain + rounding
     assert sum(bounds) > 20
     assert nearer > 20 or name == "gamma2"  # which bends too much for claims so long
     # Nor is what is said of no use.

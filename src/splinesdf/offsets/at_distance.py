@@ -16,7 +16,7 @@ from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.offsets.loops import Loops, loops_of
 from splinesdf.offsets.runs import runs_of
 from splinesdf.offsets.tables import Runs
-from splinesdf.offsets.trimmed import Stretches, joints_at, smooth_turn, trimmed
+from splinesdf.offsets.trimmed import Stretches, parallels_at, smooth_turn, trimmed
 from splinesdf.shapes.shape import Shape
 
 # Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
@@ -150,9 +150,7 @@ def _fitted(
     while True:
         arcs, weights = np.empty((room, 3, 2)), np.empty(room)
         owner = np.empty(room, dtype=np.int64)
-        count = fit_runs(
-            joints_at(shape, distance), runs, distance, tolerance, arcs, weights, owner
-        )
+        count = fit_runs(parallels_at(shape, distance), runs, tolerance, arcs, weights, owner)
         if count > MOST_ARCS:
             raise InputError(
                 f"expected a tolerance for which {MOST_ARCS:,} arcs are enough, got "

@@ -10,7 +10,7 @@ from splinesdf.arclets.joints import CUSP
 from splinesdf.arclets.tables import Joints
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
-from splinesdf.offsets.tables import Trimming
+from splinesdf.offsets.tables import Chains, Parallels, Turns, Walls
 from splinesdf.shapes.shape import Shape
 
 # Rounding in a distance, as a multiple of the largest number around: what is not farther than the
@@ -58,15 +58,19 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
     from splinesdf.offsets.kernels.safe_chains import own_chains  # Numba loads only when it is used
     from splinesdf.offsets.kernels.trim import MOST_LOOKS, trim
 
-    boundary, joints = shape.boundary, joints_at(shape, distance)
-    request = trimming(shape, distance, tolerance, smooth)
-    count = len(boundary.start)
+    joints, walls = joints_at(shape, distance), walls_at(shape, distance)
+    shortest = max(_SHORTEST * tolerance, walls.grain)
+    count = len(walls.bends)
     bent, reach = np.empty(count, dtype=np.bool_), np.empty((count, 3), dtype=np.int64)
-    own_chains(joints, request, bent, reach)
+    turns = Turns(joints.order, joints.loops, joints.turn, joints.turning)
+    own_chains(turns, walls.bends, distance, CUSP, bent, reach)
+    chains = Chains(joints.order, joints.loops, joints.place, bent, reach)
     room = 2 * count + _ROOM
     while True:
         elements, spans = np.empty((room, 2), dtype=np.int64), np.empty((room, 2))
-        found = trim(boundary, joints, request, bent, reach, elements, spans)
+        found = trim(
+            parallels_at(shape, distance), walls, chains, smooth, shortest, elements, spans
+        )
         if found < 0:
             raise InputError(
                 f"expected a distance whose parallels are told apart by {MOST_LOOKS:,} looks, got "
@@ -101,7 +105,7 @@ def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floa
     )
 
     rows = np.empty((len(at), 6))
-    parallel_points(joints_at(shape, distance), elements, np.ascontiguousarray(at), distance, rows)
+    parallel_points(parallels_at(shape, distance), elements, np.ascontiguousarray(at), rows)
     return rows
 
 
@@ -110,14 +114,15 @@ def smooth_turn(distance: float, tolerance: float) -> float:
     return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), _NOISE)) if distance else SMOOTH
 
 
-def trimming(shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH) -> Trimming:
-    """What the kernels must know."""
-    size = float(np.abs(shape.boundary.boxes[0]).max()) + abs(distance)
-    return Trimming(
-        distance=distance,
-        bends=shape.bends.rows,
-        smooth=smooth,
-        cusp=CUSP,
-        grain=_GRAIN * size,
-        shortest=max(_SHORTEST * tolerance, _GRAIN * size),
-    )
+def parallels_at(shape: Shape, distance: float) -> Parallels:
+    """What the kernels must know of the parallels at a distance."""
+    joints = joints_at(shape, distance)
+    return Parallels(distance, joints.arcs, joints.turn, joints.tangents)
+
+
+def walls_at(shape: Shape, distance: float) -> Walls:
+    """What they must know of the shape that parallels at a distance are trimmed by."""
+    boundary = shape.boundary
+    size = float(np.abs(boundary.boxes[0]).max()) + abs(distance)
+    touch = joints_at(shape, distance).touch
+    return Walls(boundary.tree, boundary.arcs, shape.bends.rows, touch, _GRAIN * size)

@@ -55,6 +55,7 @@ def find_meetings(
         boxes[i, 2] = max(arcs[i, 0, 0], arcs[i, 1, 0], arcs[i, 2, 0])
         boxes[i, 3] = max(arcs[i, 0, 1], arcs[i, 1, 1], arcs[i, 2, 1])
     stack = np.empty((_DEPTH, 2, 7))
+    shared = np.empty((2, 2))
     total = 0
     for place in range(count):
         i = order[place]
@@ -64,14 +65,14 @@ def find_meetings(
                 break
             if boxes[j, 1] > boxes[i, 3] or boxes[i, 1] > boxes[j, 3]:
                 continue
-            if _meet(arcs, weights, (i, j), following, apart, stack):
+            if _meet(arcs, weights, (i, j), following, apart, stack, shared):
                 if total < pairs.shape[0]:
                     pairs[total, 0], pairs[total, 1] = i, j
                 total += 1
     return total
 
 
-@kernel
+@uncounted
 def _meet(
     arcs: Floats,
     weights: Floats,
@@ -79,10 +80,10 @@ def _meet(
     following: Ints,
     apart: tuple[float, float],
     stack: Floats,
+    shared: Floats,
 ) -> bool:
     i, j = pair
     # Ends that both share: at most two, when they are all of a loop.
-    shared = np.empty((2, 2))
     count = 0
     if following[i] == j:
         shared[count, 0], shared[count, 1] = arcs[i, 2, 0], arcs[i, 2, 1]
@@ -92,7 +93,8 @@ def _meet(
         count += 1
     if count == 1 and _leave_apart(arcs, i, j, following):
         return False
-    for side, one in ((0, i), (1, j)):
+    for side in range(2):
+        one = pair[side]
         for k in range(3):
             stack[0, side, 2 * k], stack[0, side, 2 * k + 1] = arcs[one, k, 0], arcs[one, k, 1]
         stack[0, side, 6] = weights[one]
@@ -113,11 +115,9 @@ def _meet(
         if max(extent_a, extent_b) < apart[0] or size + 2 > stack.shape[0]:
             return True
         which = 0 if extent_a >= extent_b else 1
-        # the pair as it was stays below its halves
-        other = stack[size, 1 - which].copy()
-        whole = stack[size, which].copy()
-        _halve(whole, stack[size, which], stack[size + 1, which])
-        stack[size + 1, 1 - which] = other
+        _halve(stack[size, which], stack[size + 1, which])
+        for k in range(7):
+            stack[size + 1, 1 - which, k] = stack[size, 1 - which, k]
         size += 2
     return False
 
@@ -178,13 +178,14 @@ def _farthest(a: Floats, x: float, y: float) -> float:
 
 
 @uncounted
-def _halve(whole: Floats, first: Floats, second: Floats) -> None:
-    """Fill both halves of an arc, cut at its shoulder."""
-    w = whole[6]
+def _halve(first: Floats, second: Floats) -> None:
+    """Cut an arc at its shoulder: the first half takes its place, the second is filled in."""
+    w = first[6]
     for k in range(2):
-        into = (whole[k] + w * whole[2 + k]) / (1.0 + w)
-        out_of = (whole[4 + k] + w * whole[2 + k]) / (1.0 + w)
+        end = first[4 + k]
+        into = (first[k] + w * first[2 + k]) / (1.0 + w)
+        out_of = (end + w * first[2 + k]) / (1.0 + w)
         middle = 0.5 * (into + out_of)
-        first[k], first[2 + k], first[4 + k] = whole[k], into, middle
-        second[k], second[2 + k], second[4 + k] = middle, out_of, whole[4 + k]
+        first[2 + k], first[4 + k] = into, middle
+        second[k], second[2 + k], second[4 + k] = middle, out_of, end
     first[6] = second[6] = math.sqrt(0.5 * (1.0 + w))

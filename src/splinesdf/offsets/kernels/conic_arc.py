@@ -17,11 +17,10 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.tables import Joints
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.jit import uncounted
 from splinesdf.offsets.kernels.parallels import parallel_point
-from splinesdf.offsets.tables import Runs
+from splinesdf.offsets.tables import Parallels, Path
 
 # An arc turns by no more than this (radians). Larger: weights near zero, control points far off.
 _TURN = 1.9
@@ -41,47 +40,48 @@ _FLAT = 1e-11
 
 @uncounted
 def run_point(
-    joints: Joints, runs: Runs, begin: int, place: float, distance: float
+    parallels: Parallels, path: Path, place: float
 ) -> tuple[float, float, float, float, float, float]:
     """Point, tangent, speed and bend of a run at element + share of its span."""
     k = int(place)
     share = place - k
-    k += begin
-    if k >= runs.spans.shape[0] or (share == 0.0 and k > begin and place == int(place)):
+    if share == 0.0 and k > 0:
         # The end of the element before it: joints are smooth.
         k, share = k - 1, 1.0
-    low, high = runs.spans[k, 0], runs.spans[k, 1]
+    low, high = path.spans[k, 0], path.spans[k, 1]
     t = high if share == 1.0 else low + share * (high - low)
-    element = (runs.elements[k, 0], runs.elements[k, 1])
-    x, y, tx, ty, speed, bend = parallel_point(joints, element, t, distance)
+    element = (path.elements[k, 0], path.elements[k, 1])
+    x, y, tx, ty, speed, bend = parallel_point(parallels, element, t)
     if element[1] == 0 and t in (0.0, 1.0):
         # The tangent that the neighbor has, too.
         side = 2 * int(t)
-        tx, ty = joints.tangents[element[0], side], joints.tangents[element[0], side + 1]
+        tx, ty = parallels.tangents[element[0], side], parallels.tangents[element[0], side + 1]
     return x, y, tx, ty, speed * (high - low), bend
 
 
 @uncounted
 def conic_arc(
-    joints: Joints,
-    runs: Runs,
-    span: tuple[int, float, float],
+    parallels: Parallels,
+    path: Path,
+    span: tuple[float, float],
     ends: tuple[tuple[float, float, float, float], tuple[float, float, float, float]],
-    asked: tuple[float, float],
-    finer: int,
+    tolerance: float,
+    finer: float,
     points: Floats,
 ) -> tuple[float, float, float, float]:
     """How far one conic is off a part of a run; its middle control point and weight.
 
     Parameters
     ----------
-    span : tuple
-        The run's first stretch, and the places between which a conic is wanted.
+    parallels : Parallels
+    path : Path
+        The run.
+    span : tuple of float
+        The places between which a conic is wanted.
     ends : tuple
         Point and unit tangent at both.
-    asked : tuple of float
-        Distance and tolerance.
-    finer : int
+    tolerance : float
+    finer : float
         How many times as many points as at least are looked at.
     points : ndarray, shape (room, 2)
         Room for them.
@@ -93,7 +93,7 @@ def conic_arc(
         conic.
     x, y, weight : float
     """
-    limit = _SAFE * asked[1]
+    limit = _SAFE * tolerance
     ax, ay, ux, uy = ends[0]
     bx, by, vx, vy = ends[1]
     cx, cy = bx - ax, by - ay
@@ -103,7 +103,7 @@ def conic_arc(
     nothing = (np.inf, 0.0, 0.0, 0.0)
     if abs(turn) > _TURN or chord == 0.0:
         return nothing
-    count = look(joints, runs, span, (ax, ay), asked[0], finer, chord, points)
+    count = look(parallels, path, span, (ax, ay), finer, chord, points)
     if count < 0:
         return nothing
     worst = 0.0
@@ -135,12 +135,11 @@ def conic_arc(
 
 @uncounted
 def look(
-    joints: Joints,
-    runs: Runs,
-    span: tuple[int, float, float],
+    parallels: Parallels,
+    path: Path,
+    span: tuple[float, float],
     start: tuple[float, float],
-    distance: float,
-    finer: int,
+    finer: float,
     chord: float,
     points: Floats,
 ) -> int:
@@ -148,7 +147,7 @@ def look(
 
     Where a short arclet turns fast its parallel is long, so that steps are bounded along both.
     """
-    begin, place, high = span
+    place, high = span
     x, y = start
     each = math.ceil(high) - int(place)
     step = (high - place) / (finer * max(_POINTS, _POINTS_EACH * each))
@@ -163,7 +162,7 @@ def look(
             at = min(place + length, high)
             if high - at < 0.01 * length:
                 at = high
-            row = run_point(joints, runs, begin, at, distance)
+            row = run_point(parallels, path, at)
             if math.hypot(row[0] - x, row[1] - y) <= longest or place + 0.5 * length <= place:
                 break
             length = 0.5 * length

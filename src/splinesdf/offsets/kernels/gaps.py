@@ -14,11 +14,11 @@ import math
 import numpy as np
 
 from splinesdf.arclets.kernels.nearest import closest_on, point_on
-from splinesdf.arclets.tables import Arclets, Joints, Scratch
+from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
 from splinesdf.offsets.kernels.parallels import parallel_point
-from splinesdf.offsets.tables import Trimming
+from splinesdf.offsets.tables import Parallels, Walls
 
 # A point this share of its distance beside the end of an arclet, or more, stays on that side where
 # the second derivative of its distance is bounded, as it moves by less than half of its distance.
@@ -29,9 +29,8 @@ _STEPS = 80
 
 @uncounted
 def narrow(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     stretch: tuple[tuple[int, int], float, float, float],
     listed: tuple[int, int, int],
     near: Ints,
@@ -50,16 +49,16 @@ def narrow(
     """
     element, a, b, reach = stretch
     base, number, top = listed
-    arcs = arclets.arcs
-    distance = trimming.distance
+    arcs = walls.arcs
+    distance = parallels.distance
     radius = abs(distance)
     m = 0.5 * (a + b)
-    x, y, tx, ty, _, bend = parallel_point(joints, element, m, distance)
+    x, y, tx, ty, _, bend = parallel_point(parallels, element, m)
     low, high = a, b
     left = 0
     # A stretch that turns by at most half a turn is at most this much longer than its chords.
     length = 1.12 * reach
-    least, most = bend_range(trimming, element, bend, b - a)
+    least, most = bend_range(walls.bends, distance, element, bend, b - a)
     for k in range(number):
         j = near[base + k]
         squared, t = closest_on(arcs, j, x, y, (radius + reach) ** 2, scratch)
@@ -70,16 +69,16 @@ def narrow(
             return a, b, 0, True
         px, py = point_on(arcs, j, t)
         gx, gy = (x - px) / far, (y - py) / far
-        gap = far - radius - _grain(joints, trimming, element, j)
+        gap = far - radius - _grain(walls, element, j)
         slope = gx * tx + gy * ty
         under, over, slack = _second_range(
-            trimming.bends[j], (far, gx, gy, t), (tx, ty, least, most), length
+            walls.bends[j], (far, gx, gy, t), (tx, ty, least, most), length
         )
         if gap + abs(slope) * length + 0.5 * max(over, 0.0) * length * length <= 0.0:
             return a, b, 0, True
         if gap <= 0.0 and _stays_nearer(
             arcs,
-            trimming.bends[j],
+            walls.bends[j],
             j,
             (far, gx, gy, t),
             (tx, ty, least, most),
@@ -89,7 +88,7 @@ def narrow(
             return a, b, 0, True
         bent = max(abs(least), abs(most))
         if gap <= 0.0 and _is_nearer_at_its_ends(
-            arclets, joints, trimming, (element, a, b), j, (bent, length), scratch
+            parallels, walls, (element, a, b), j, (bent, length), scratch
         ):
             return a, b, 0, True
         steepest = abs(slope) + slack
@@ -99,15 +98,15 @@ def narrow(
         if lowest > 0.0:
             continue
         if abs(slope) > slack + max(abs(under), abs(over)) * length:
-            at_a = gap_at(arclets, joints, trimming, element, j, a, scratch)
-            at_b = gap_at(arclets, joints, trimming, element, j, b, scratch)
+            at_a = gap_at(parallels, walls, element, j, a, scratch)
+            at_b = gap_at(parallels, walls, element, j, b, scratch)
             if at_a <= 0.0 and at_b <= 0.0:
                 return a, b, 0, True
             if at_a < 0.0 < at_b:
-                low = max(low, _passes(arclets, joints, trimming, element, j, (a, b), scratch))
+                low = max(low, _passes(parallels, walls, element, j, (a, b), scratch))
                 continue
             if at_b < 0.0 < at_a:
-                high = min(high, _passes(arclets, joints, trimming, element, j, (b, a), scratch))
+                high = min(high, _passes(parallels, walls, element, j, (b, a), scratch))
                 continue
             if at_a > 0.0 and at_b > 0.0:
                 continue
@@ -175,9 +174,8 @@ def _stays_nearer(
 
 @uncounted
 def _is_nearer_at_its_ends(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     stretch: tuple[tuple[int, int], float, float],
     j: int,
     bounds: tuple[float, float],
@@ -191,21 +189,21 @@ def _is_nearer_at_its_ends(
     """
     element, a, b = stretch
     bend, length = bounds
-    row = trimming.bends[j]
+    row = walls.bends[j]
     other = max(abs(row[0]), abs(row[1]))
     if not (bend < np.inf and other < np.inf):
         return False
-    x, y, _, _, _, _ = parallel_point(joints, element, a, trimming.distance)
-    squared, t = closest_on(arclets.arcs, j, x, y, np.inf, scratch)
-    px, py = point_on(arclets.arcs, j, t)
+    x, y, _, _, _, _ = parallel_point(parallels, element, a)
+    squared, t = closest_on(walls.arcs, j, x, y, np.inf, scratch)
+    px, py = point_on(walls.arcs, j, t)
     far = math.sqrt(squared)
-    x, y, _, _, _, _ = parallel_point(joints, element, b, trimming.distance)
-    squared, t = closest_on(arclets.arcs, j, x, y, np.inf, scratch)
-    qx, qy = point_on(arclets.arcs, j, t)
+    x, y, _, _, _, _ = parallel_point(parallels, element, b)
+    squared, t = closest_on(walls.arcs, j, x, y, np.inf, scratch)
+    qx, qy = point_on(walls.arcs, j, t)
     far = max(far, math.sqrt(squared))
     # An arclet turns by so little that it is at most a fifth longer than its chord.
     across = 0.125 * other * 1.44 * ((qx - px) ** 2 + (qy - py) ** 2)
-    gap = far - abs(trimming.distance) - _grain(joints, trimming, element, j)
+    gap = far - abs(parallels.distance) - _grain(walls, element, j)
     return bool(gap + across + 0.5 * bend * length * length <= 0.0)
 
 
@@ -220,18 +218,18 @@ def _largest(a: float, b: float, low: float) -> float:
 
 @uncounted
 def bend_range(
-    trimming: Trimming, element: tuple[int, int], bend: float, width: float
+    bends: Floats, d: float, element: tuple[int, int], bend: float, width: float
 ) -> tuple[float, float]:
-    """The range of the curvature of a stretch, of which that in the middle is ``bend``.
+    """The range of the curvature of a stretch at d, of which that in the middle is ``bend``.
 
     It increases with the curvature kappa of the arclet: kappa / (1 + kappa d).
     """
     i, corner = element
     if corner:
         return bend, bend
-    low, high, d = trimming.bends[i, 0], trimming.bends[i, 1], trimming.distance
+    low, high = bends[i, 0], bends[i, 1]
     middle = bend / (1.0 - bend * d)
-    change = 0.5 * width * trimming.bends[i, 9] * trimming.bends[i, 2]
+    change = 0.5 * width * bends[i, 9] * bends[i, 2]
     if change < np.inf and middle == middle:
         low, high = max(low, middle - change), min(high, middle + change)
     if 1.0 + low * d > 0.0 and 1.0 + high * d > 0.0:
@@ -304,42 +302,40 @@ def _least_bend(row: Floats, foot: tuple[float, float, float, float], length: fl
 
 @uncounted
 def gap_at(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     element: tuple[int, int],
     j: int,
     t: float,
     scratch: Scratch,
 ) -> float:
     """How much farther than |d| the arclet j is from a point of the parallel."""
-    point = parallel_point(joints, element, t, trimming.distance)
-    squared, _ = closest_on(arclets.arcs, j, point[0], point[1], np.inf, scratch)
+    point = parallel_point(parallels, element, t)
+    squared, _ = closest_on(walls.arcs, j, point[0], point[1], np.inf, scratch)
     far = math.sqrt(squared)
-    return far - abs(trimming.distance) - _grain(joints, trimming, element, j)
+    return far - abs(parallels.distance) - _grain(walls, element, j)
 
 
 @uncounted
-def _grain(joints: Joints, trimming: Trimming, element: tuple[int, int], j: int) -> float:
+def _grain(walls: Walls, element: tuple[int, int], j: int) -> float:
     """By how much an arclet may be farther than the distance and still count as nearer.
 
     One that meets the element's arclet in a point is as near as that point, no nearer: what decides
     there is which branches bound which wedge, see `splinesdf.arclets.vertices`.
     """
     i, corner = element
-    touch = joints.touch
+    touch = walls.touch
     for end in range(corner, 2):
         v = touch[i, end]
         if v >= 0 and (touch[j, 0] == v or touch[j, 1] == v):
-            return -trimming.grain
-    return trimming.grain
+            return -walls.grain
+    return walls.grain
 
 
 @uncounted
 def _passes(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     element: tuple[int, int],
     j: int,
     ends: tuple[float, float],
@@ -347,8 +343,8 @@ def _passes(
 ) -> float:
     """Where the gap to arclet j, below zero at the first end, is zero: secants in a bracket."""
     low, high = ends
-    f_low = gap_at(arclets, joints, trimming, element, j, low, scratch)
-    f_high = gap_at(arclets, joints, trimming, element, j, high, scratch)
+    f_low = gap_at(parallels, walls, element, j, low, scratch)
+    f_high = gap_at(parallels, walls, element, j, high, scratch)
     side = 0
     t = high
     for step in range(_STEPS):
@@ -358,7 +354,7 @@ def _passes(
             t = 0.5 * (low + high)
         if t in (low, high):
             break
-        f = gap_at(arclets, joints, trimming, element, j, t, scratch)
+        f = gap_at(parallels, walls, element, j, t, scratch)
         if f == 0.0:
             break
         # Illinois: an end that stays loses half of its weight

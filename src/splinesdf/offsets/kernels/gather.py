@@ -6,39 +6,39 @@ Used by `trim`.
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import numpy as np
 
 from splinesdf.arclets.kernels.nearest import capsule_distance, point_on, search
-from splinesdf.arclets.tables import Arclets, Joints, Scratch
+from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
-from splinesdf.ground.jit import kernel, uncounted
+from splinesdf.ground.jit import uncounted
 from splinesdf.offsets.kernels.gaps import bend_range
 from splinesdf.offsets.kernels.parallels import parallel_point
-from splinesdf.offsets.tables import Trimming
+from splinesdf.offsets.tables import Parallels, Walls
 
-# Parts of a stretch that are looked at to find one to which nothing is nearer; each is a quarter of
-# it at most. More: time, next to cusps, where nothing is proved; fewer: short ones are missed.
-_LOOKED = 32
+# Searches start from the root alone and pass over no arclet. As integers of a type of their own:
+# for literals Numba would compile `search` anew.
+_ROOT, _NONE = cast(int, np.int64(1)), cast(int, np.int64(-1))
 
 
 @uncounted
 def gather(
-    arclets: Arclets,
+    tree: Floats,
     place: Ints,
     disk: tuple[float, float, float],
     chord: tuple[tuple[float, float, float, float], float],
     own: tuple[int, int, int],
     near: Ints,
     most: int,
-    scratch: Scratch,
+    nodes: Ints,
 ) -> int:
     """List the arclets, but for the own chain, that may reach into a disk, and near to a chord.
 
     The disk is x, y, radius; the chord its ends and how near. How many there are, or -1 if they are
-    more than ``most``.
+    more than ``most``. The last of all is room.
     """
-    tree, nodes = arclets.tree, scratch.nodes
     x, y, farthest = disk
     segment, beside = chord
     first, begin, length = own
@@ -91,47 +91,56 @@ def _apart(tree: Floats, node: int, segment: tuple[float, float, float, float]) 
 
 
 @uncounted
-def is_near(arclets: Arclets, x: float, y: float, limit: float, scratch: Scratch) -> bool:
+def is_near(walls: Walls, x: float, y: float, limit: float, scratch: Scratch) -> bool:
     """Whether anything is nearer to a point than the limit."""
     if limit <= 0.0:
         return False
-    scratch.nodes[0] = 0
-    _, hit, _ = search(arclets.tree, arclets.arcs, x, y, limit, 1, -1, -1.0, scratch)
+    _, hit, _ = _nearest(walls, x, y, limit, scratch)
     return bool(hit >= 0)
 
 
-@kernel
+@uncounted
+def _nearest(
+    walls: Walls, x: float, y: float, limit: float, scratch: Scratch
+) -> tuple[float, int, float]:
+    """The arclet nearest to a point within a limit, see `search`."""
+    scratch.nodes[0] = 0
+    return search(walls.tree, walls.arcs, x, y, limit, _ROOT, _NONE, -1.0, scratch)
+
+
+@uncounted
 def surfaces(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     element: tuple[int, int],
     span: tuple[float, float],
-    limit: float,
+    limits: tuple[float, float],
+    spans: Floats,
     scratch: Scratch,
 ) -> float:
     """A parameter between two, to which something is nearer, where nothing is; else NaN.
 
     The distance to the nearest point, as it moves along the stretch, bends upward by no more than
     1 / distance + curvature. So it stays below the limit for a while from either end, which grows
-    like the root of how far below it is there. If both meet, nothing is between.
+    like the root of how far below it is there. If both meet, nothing is between. Limits are how
+    near something is, and how short a stretch is not looked at.
     """
-    spans = np.empty((_LOOKED + 2, 2))
+    limit, shortest = limits
     spans[0, 0], spans[0, 1] = span
     size = 1
-    for _ in range(_LOOKED):
+    for _ in range(spans.shape[0] - 2):
         if size == 0:
             break
         size -= 1
         a, b = spans[size, 0], spans[size, 1]
-        ax, ay, far_a, slope_a = _nearest_along(arclets, joints, trimming, element, a, scratch)
-        bx, by, far_b, slope_b = _nearest_along(arclets, joints, trimming, element, b, scratch)
+        ax, ay, far_a, slope_a = _nearest_along(parallels, walls, element, a, scratch)
+        bx, by, far_b, slope_b = _nearest_along(parallels, walls, element, b, scratch)
         length = 1.12 * math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
-        if length <= trimming.shortest:
+        if length <= shortest:
             continue
         m = 0.5 * (a + b)
-        _, _, _, _, _, bend = parallel_point(joints, element, m, trimming.distance)
-        least, most = bend_range(trimming, element, bend, b - a)
+        _, _, _, _, _, bend = parallel_point(parallels, element, m)
+        least, most = bend_range(walls.bends, parallels.distance, element, bend, b - a)
         curved = max(abs(least), abs(most))
         if curved < np.inf and length < min(far_a, far_b):
             up = curved + 1.0 / (min(far_a, far_b) - length)
@@ -139,7 +148,7 @@ def surfaces(
             below += _stays_below(far_b - limit, -slope_b, up)
             if below >= length:
                 continue
-        _, _, far, _ = _nearest_along(arclets, joints, trimming, element, m, scratch)
+        _, _, far, _ = _nearest_along(parallels, walls, element, m, scratch)
         if far >= limit:
             return float(m)
         spans[size, 0], spans[size, 1] = m, b
@@ -150,22 +159,19 @@ def surfaces(
 
 @uncounted
 def _nearest_along(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     element: tuple[int, int],
     t: float,
     scratch: Scratch,
 ) -> tuple[float, float, float, float]:
     """A point of a parallel, how far what is nearest is, and how fast that changes along it."""
-    x, y, tx, ty, _, _ = parallel_point(joints, element, t, trimming.distance)
-    scratch.nodes[0] = 0
+    x, y, tx, ty, _, _ = parallel_point(parallels, element, t)
     # Nothing is farther than where the point belongs, but for rounding.
-    limit = 2.0 * abs(trimming.distance)
-    far, hit, at = search(arclets.tree, arclets.arcs, x, y, limit, 1, -1, -1.0, scratch)
+    far, hit, at = _nearest(walls, x, y, 2.0 * abs(parallels.distance), scratch)
     if hit < 0 or far == 0.0:
         return x, y, far, 0.0
-    px, py = point_on(arclets.arcs, hit, at)
+    px, py = point_on(walls.arcs, hit, at)
     return x, y, far, ((x - px) * tx + (y - py) * ty) / far
 
 

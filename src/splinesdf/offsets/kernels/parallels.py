@@ -11,9 +11,9 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.tables import Joints
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
+from splinesdf.offsets.tables import Parallels
 
 # Of an arclet's larger control step: slower than this, its direction is half rounding, and that
 # of its end is taken. Only within 1e-8 of a cusp.
@@ -22,13 +22,13 @@ _STANDS = 1e-8
 
 @uncounted
 def parallel_point(
-    joints: Joints, element: tuple[int, int], t: float, distance: float
+    parallels: Parallels, element: tuple[int, int], t: float
 ) -> tuple[float, float, float, float, float, float]:
     """Point, unit tangent of the shape there, speed and curvature of the parallel.
 
     Parameters
     ----------
-    joints : Joints
+    parallels : Parallels
     element : tuple of int
         The arclet, and whether its parallel (0) or the arc around its end (1) is meant.
     t : float
@@ -41,14 +41,14 @@ def parallel_point(
         parallel, positive to the left, and infinite where the speed is zero.
     """
     i, corner = element
-    arcs = joints.arcs
+    arcs, distance = parallels.arcs, parallels.distance
     if corner:
-        angle = t * joints.turn[i]
+        angle = t * parallels.turn[i]
         c, s = math.cos(angle), math.sin(angle)
-        ax, ay = joints.tangents[i, 2], joints.tangents[i, 3]
+        ax, ay = parallels.tangents[i, 2], parallels.tangents[i, 3]
         tx, ty = c * ax - s * ay, s * ax + c * ay
         x, y = arcs[i, 1] + distance * ty, arcs[i, 2] - distance * tx
-        return x, y, tx, ty, distance * joints.turn[i], 1.0 / distance
+        return x, y, tx, ty, distance * parallels.turn[i], 1.0 / distance
     degree = int(arcs[i, 0])
     x = y = dx = dy = ddx = ddy = 0.0
     for k in range(3 + 2 * degree, 3, -2):
@@ -64,7 +64,7 @@ def parallel_point(
     extent = abs(arcs[i, 1] - arcs[i, 3]) + abs(arcs[i, 2] - arcs[i, 4])
     if speed <= _STANDS * extent:
         first = 0 if t < 0.5 else 2
-        tx, ty = joints.tangents[i, first], joints.tangents[i, first + 1]
+        tx, ty = parallels.tangents[i, first], parallels.tangents[i, first + 1]
         return x + distance * ty, y - distance * tx, tx, ty, 0.0, np.inf
     tx, ty = dx / speed, dy / speed
     curvature = 2.0 * (dx * ddy - dy * ddx) / (speed * speed * speed)
@@ -73,12 +73,10 @@ def parallel_point(
 
 
 @kernel
-def parallel_points(
-    joints: Joints, elements: Ints, at: Floats, distance: float, rows: Floats
-) -> None:
+def parallel_points(parallels: Parallels, elements: Ints, at: Floats, rows: Floats) -> None:
     """Fill what `parallel_point` returns, for elements (n, 2) at parameters (n,): (n, 6)."""
     for k in range(elements.shape[0]):
         element = (elements[k, 0], elements[k, 1])
-        x, y, tx, ty, speed, curvature = parallel_point(joints, element, at[k], distance)
+        x, y, tx, ty, speed, curvature = parallel_point(parallels, element, at[k])
         rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3] = x, y, tx, ty
         rows[k, 4], rows[k, 5] = speed, curvature

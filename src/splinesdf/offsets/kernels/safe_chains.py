@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import math
 
-from splinesdf.arclets.tables import Joints
-from splinesdf.ground.arrays import Bools, Ints
+from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
-from splinesdf.offsets.tables import Trimming
+from splinesdf.offsets.tables import Turns
 
 # How far a chain may turn (radians) and still be called the arclet's own. It must be below pi, by
 # more than an arclet turns.
@@ -26,21 +25,29 @@ _DENTS, _WIDTH = 1e-7, 0.5
 
 
 @kernel
-def own_chains(joints: Joints, trimming: Trimming, bent: Bools, reach: Ints) -> None:
+def own_chains(
+    turns: Turns, bends: Floats, distance: float, cusp: float, bent: Bools, reach: Ints
+) -> None:
     """Fill which arclets bend too much, and how far each one's own chain reaches.
 
     Parameters
     ----------
+    turns : Turns
+    bends : ndarray
+        Rows of `Bends`.
+    distance : float
+        Positive to the right of the boundary, which is outward.
+    cusp : float
+        A joint that turns by half a turn within this (radians) is a cusp.
     bent : ndarray of bool, shape (n,)
         Filled, by arclet: whether its parallel may run backward somewhere.
     reach : ndarray, shape (n, 3)
-        Filled, by place in ``joints.order``: how many of the following and how many of the
+        Filled, by place in ``turns.order``: how many of the following and how many of the
         preceding arclets belong to the chain; 1 if one of the chain is bent, else 0.
     """
-    order, loops, turn = joints.order, joints.loops, joints.turn
-    distance = trimming.distance
+    order, loops, turn = turns.order, turns.loops, turns.turn
     for i in range(bent.shape[0]):
-        low, high = trimming.bends[i, 0], trimming.bends[i, 1]
+        low, high = bends[i, 0], bends[i, 1]
         # written so that infinite ranges and NaN count as bent
         bent[i] = not (1.0 + low * distance > 0.0 and 1.0 + high * distance > 0.0)
     for j in range(loops.shape[0] - 1):
@@ -63,11 +70,11 @@ def own_chains(joints: Joints, trimming: Trimming, bent: Bools, reach: Ints) -> 
                     dent = _dent(angle, distance)
                     if dent > 0.0 and not (
                         dents + dent <= _DENTS
-                        and _is_wide(trimming, last)
-                        and _is_wide(trimming, other)
+                        and _is_wide(bends, last, distance)
+                        and _is_wide(bends, other, distance)
                     ):
                         break
-                    more = abs(angle) + joints.turning[other]
+                    more = abs(angle) + turns.turning[other]
                     if count > 0 and total + more > _OWN_TURN:
                         break
                     total += more
@@ -80,7 +87,7 @@ def own_chains(joints: Joints, trimming: Trimming, bent: Bools, reach: Ints) -> 
                         order[first + (p - 1) % size] if backward else order[first + (p + 1) % size]
                     )
                     angle = turn[other] if backward else turn[order[first + p]]
-                    total -= abs(angle) + joints.turning[other]
+                    total -= abs(angle) + turns.turning[other]
                     count -= 1
                     dents -= _dent(angle, distance)
                     if count == 0:
@@ -93,8 +100,8 @@ def own_chains(joints: Joints, trimming: Trimming, bent: Bools, reach: Ints) -> 
             for n in range(2 * size):
                 p = (2 * size - 1 - n if not backward else n) % size
                 i, before = order[first + p], order[first + (p - 1) % size]
-                cusp = max(abs(turn[i]), abs(turn[before])) > math.pi - trimming.cusp
-                since = 0 if bent[i] or cusp else since + 1
+                back = max(abs(turn[i]), abs(turn[before])) > math.pi - cusp
+                since = 0 if bent[i] or back else since + 1
                 if since <= reach[first + p, backward]:
                     reach[first + p, 2] = 1
 
@@ -106,7 +113,7 @@ def _dent(angle: float, distance: float) -> float:
 
 
 @uncounted
-def _is_wide(trimming: Trimming, i: int) -> bool:
+def _is_wide(bends: Floats, i: int, distance: float) -> bool:
     """Whether an arclet bends toward the offset by clearly less than 1 / |d|."""
-    low, high, distance = trimming.bends[i, 0], trimming.bends[i, 1], trimming.distance
+    low, high = bends[i, 0], bends[i, 1]
     return bool(1.0 + low * distance > _WIDTH and 1.0 + high * distance > _WIDTH)

@@ -24,13 +24,13 @@ import math
 import numpy as np
 
 from splinesdf.arclets.kernels.nearest import room_to_search
-from splinesdf.arclets.tables import Arclets, Joints, Scratch
-from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.arclets.tables import Scratch
+from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
 from splinesdf.offsets.kernels.gaps import bend_range, gap_at, narrow
 from splinesdf.offsets.kernels.gather import gather, is_near, surfaces
 from splinesdf.offsets.kernels.parallels import parallel_point
-from splinesdf.offsets.tables import Trimming
+from splinesdf.offsets.tables import Chains, Parallels, Trimmed, Walls, Workroom
 
 # Halvings of an arclet to separate where its parallel runs forward from where it runs backward.
 # What is then undecided is 1/4096 of it next to a turning point, less than 1e-14 of the offset.
@@ -47,6 +47,9 @@ _CUSP_PARTS = 64
 _COARSE, _FEW = 32.0, 24
 # Of each stretch between turning points, so many parts have their ends compared.
 _COMPARED = 4
+# Parts of a stretch that are looked at to find one to which nothing is nearer; each is a quarter of
+# it at most. More: time, next to cusps, where nothing is proved; fewer: short ones are missed.
+_LOOKED = 32
 # Steps to where the offset is left. Bisection alone would need 53; the secants need about 8.
 _STEPS = 80
 # By how much a disk may be entered, in grains, before a stretch that is compared is cut: normals
@@ -64,11 +67,11 @@ MOST_LOOKS = 50_000_000
 
 @kernel
 def trim(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
-    bent: Bools,
-    reach: Ints,
+    parallels: Parallels,
+    walls: Walls,
+    chains: Chains,
+    smooth: float,
+    shortest: float,
     elements: Ints,
     spans: Floats,
 ) -> int:
@@ -76,8 +79,13 @@ def trim(
 
     Parameters
     ----------
-    bent, reach : ndarray
-        From `own_chains`.
+    parallels : Parallels
+    walls : Walls
+    chains : Chains
+    smooth : float
+        A joint that turns by less (radians) is none.
+    shortest : float
+        A stretch that reaches no farther counts as its middle does.
     elements : ndarray, shape (room, 2)
         Filled: the arclet, and 1 for the arc around its end.
     spans : ndarray, shape (room, 2)
@@ -89,22 +97,39 @@ def trim(
         How many there are; if more than there is room for, only those are filled; -1 if more
         than `MOST_LOOKS` would have to be looked at.
     """
-    arcs = arclets.arcs
-    order, loops, turn = joints.order, joints.loops, joints.turn
-    distance = trimming.distance
+    room = Workroom(
+        np.empty((_CUSP_PARTS + 2**_TURNING, 2)),
+        np.empty(4 * walls.arcs.shape[0] + 1024, dtype=np.int64),
+        np.empty((4096, 4)),
+        np.empty((_LOOKED + 2, 2)),
+        room_to_search(walls.arcs),
+    )
+    counts = np.zeros(3, dtype=np.int64)
+    _trim(parallels, walls, chains, (smooth, shortest), room, Trimmed(elements, spans, counts))
+    return -1 if counts[2] > MOST_LOOKS else int(counts[0])
+
+
+@uncounted
+def _trim(
+    parallels: Parallels,
+    walls: Walls,
+    chains: Chains,
+    limits: tuple[float, float],
+    room: Workroom,
+    found: Trimmed,
+) -> None:
+    """Fill the stretches, see `trim`, unless there is too much to look at."""
+    order, loops, reach = chains.order, chains.loops, chains.reach
+    turn, distance = parallels.turn, parallels.distance
     radius = abs(distance)
-    scratch = room_to_search(arcs)
-    near = np.empty(4 * arcs.shape[0] + 1024, dtype=np.int64)
-    stack = np.empty((4096, 4))
-    parts = np.empty((_CUSP_PARTS + 2**_TURNING, 2))
-    looks = np.zeros(1, dtype=np.int64)
-    total = 0
+    smooth, shortest = limits
+    parts, counts = room.parts, found.counts
     for j in range(loops.shape[0] - 1):
         first, size = loops[j], loops[j + 1] - loops[j]
         for p in range(size):
             i = order[first + p]
             for corner in range(2):
-                if corner and not turn[i] * distance > trimming.smooth * radius:
+                if corner and not turn[i] * distance > smooth * radius:
                     continue
                 after = (p + 1) % size
                 behind, ahead = reach[first + p, 1], reach[first + p, 0]
@@ -116,39 +141,38 @@ def trim(
                 element = (i, corner)
                 count = 1
                 parts[0, 0], parts[0, 1] = 0.0, 1.0
-                if not corner and bent[i]:
-                    count = _forward(joints, trimming, element, parts)
-                since = total
+                if not corner and chains.bent[i]:
+                    count = _forward(parallels, walls.bends, element, parts)
+                counts[1] = counts[0]
                 for k in range(count):
-                    total = _trim_stretch(
-                        arclets,
-                        joints,
-                        trimming,
+                    _trim_stretch(
+                        parallels,
+                        walls,
+                        chains.place,
                         (element, (parts[k, 0], parts[k, 1]), own, compared),
-                        (near, stack, looks, scratch),
-                        (elements, spans),
-                        (since, total),
+                        shortest,
+                        room,
+                        found,
                     )
-                    if looks[0] > MOST_LOOKS:
-                        return -1
-    return total
+                    if counts[2] > MOST_LOOKS:
+                        return
 
 
 @uncounted
-def _forward(joints: Joints, trimming: Trimming, element: tuple[int, int], parts: Floats) -> int:
+def _forward(parallels: Parallels, bends: Floats, element: tuple[int, int], parts: Floats) -> int:
     """The parts of a bent arclet where its parallel runs forward, in order; how many."""
     i = element[0]
-    distance = trimming.distance
-    row = trimming.bends[i]
+    distance = parallels.distance
+    row = bends[i]
     if 1.0 + max(row[0] * distance, row[1] * distance) <= _POINT:
         return 0
     # Of 1 + kappa d with the parameter.
-    change = abs(distance) * trimming.bends[i, 2] * trimming.bends[i, 9]
+    change = abs(distance) * bends[i, 2] * bends[i, 9]
     count = 0
     if not change < np.inf:
         for k in range(_CUSP_PARTS):
             a, b = k / _CUSP_PARTS, (k + 1) / _CUSP_PARTS
-            middle = parallel_point(joints, element, 0.5 * (a + b), distance)
+            middle = parallel_point(parallels, element, 0.5 * (a + b))
             if middle[4] > 0.0:
                 parts[count, 0], parts[count, 1] = a, b
                 count += 1
@@ -157,7 +181,7 @@ def _forward(joints: Joints, trimming: Trimming, element: tuple[int, int], parts
     while True:
         width = 1.0 / (1 << depth)
         a = at * width
-        middle = parallel_point(joints, element, a + 0.5 * width, distance)
+        middle = parallel_point(parallels, element, a + 0.5 * width)
         # 1 / (1 + kappa d), from the curvature of the parallel
         bound = 0.5 * width * change
         # 1 + kappa d = 1 / (1 - d curvature)
@@ -177,25 +201,25 @@ def _forward(joints: Joints, trimming: Trimming, element: tuple[int, int], parts
             at, depth = 2 * at, depth + 1
 
 
-@kernel
+@uncounted
 def _trim_stretch(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
+    place: Ints,
     stretch: tuple[tuple[int, int], tuple[float, float], tuple[int, int, int], bool],
-    room: tuple[Ints, Floats, Ints, Scratch],
-    found: tuple[Ints, Floats],
-    counts: tuple[int, int],
-) -> int:
-    """Append what is left of one stretch, see `trim`; how many there are then."""
+    shortest: float,
+    room: Workroom,
+    found: Trimmed,
+) -> None:
+    """Append what is left of one stretch, see `trim`."""
     element, (start, stop), own, compared = stretch
-    near, stack, looks, scratch = room
-    since, total = counts
-    distance = trimming.distance
-    radius, grain = abs(distance), trimming.grain
+    near, stack, scratch = room.near, room.stack, room.scratch
+    counts = found.counts
+    distance = parallels.distance
+    radius, grain = abs(distance), walls.grain
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = start, stop, -1.0, 0.0
     size, looked = 1, 0
-    while size > 0 and looks[0] <= MOST_LOOKS:
+    while size > 0 and counts[2] <= MOST_LOOKS:
         size -= 1
         a, b, base, number = (
             stack[size, 0],
@@ -204,32 +228,32 @@ def _trim_stretch(
             int(stack[size, 3]),
         )
         looked += 1
-        looks[0] += 1
+        counts[2] += 1
         m = 0.5 * (a + b)
-        middle = parallel_point(joints, element, m, distance)
+        middle = parallel_point(parallels, element, m)
         x, y = middle[0], middle[1]
-        ax, ay, _, _, _, _ = parallel_point(joints, element, a, distance)
-        bx, by, _, _, _, _ = parallel_point(joints, element, b, distance)
+        ax, ay, _, _, _, _ = parallel_point(parallels, element, a)
+        bx, by, _, _, _, _ = parallel_point(parallels, element, b)
         reach = math.sqrt((ax - x) ** 2 + (ay - y) ** 2)
         reach = max(reach, math.sqrt((bx - x) ** 2 + (by - y) ** 2)) + grain
         if base < 0:
-            if is_near(arclets, x, y, radius - reach, scratch):
+            if is_near(walls, x, y, radius - reach, scratch):
                 continue
             most = near.shape[0] // 2
             if _COARSE * reach > radius and size + 2 < stack.shape[0] and a < m < b:
                 most = _FEW
             # No point of the stretch is farther from its chord.
-            least, bend = bend_range(trimming, element, middle[5], b - a)
+            least, bend = bend_range(walls.bends, distance, element, middle[5], b - a)
             bulge = 0.5 * max(abs(least), abs(bend)) * (1.12 * reach) ** 2 + grain
             number = gather(
-                arclets,
-                joints.place,
+                walls.tree,
+                place,
                 (x, y, radius + reach),
                 ((ax, ay, bx, by), radius + bulge),
                 own,
                 near,
                 most,
-                scratch,
+                scratch.nodes,
             )
             if number < 0:
                 stack[size, 0], stack[size, 1], stack[size, 2] = m, b, -1.0
@@ -240,12 +264,12 @@ def _trim_stretch(
         else:
             top = base + number
         low, high, left, gone = narrow(
-            arclets, joints, trimming, (element, a, b, reach), (base, number, top), near, scratch
+            parallels, walls, (element, a, b, reach), (base, number, top), near, scratch
         )
         if gone:
             continue
         if left > 0:
-            small = reach <= trimming.shortest or not a < m < b
+            small = reach <= shortest or not a < m < b
             small = small or (looked > _PATIENCE and reach <= _IMPATIENT * radius)
             if not small and size + 2 < stack.shape[0] and top + left < near.shape[0]:
                 if 2 * left > number:
@@ -260,62 +284,58 @@ def _trim_stretch(
             beyond = True
             for k in range(left):
                 j = near[top + k]
-                beyond = beyond and gap_at(arclets, joints, trimming, element, j, m, scratch) > 0.0
+                beyond = beyond and gap_at(parallels, walls, element, j, m, scratch) > 0.0
             if not beyond:
                 continue
         if compared:
-            total = _compare(
-                arclets, joints, trimming, element, (low, high), scratch, found, since, total
-            )
+            _compare(parallels, walls, element, (low, high), shortest, room, found)
         else:
-            total = _append(element, (low, high), found, since, total)
-    return total
+            _append(element, (low, high), found)
 
 
-@kernel
+@uncounted
 def _compare(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     element: tuple[int, int],
     span: tuple[float, float],
-    scratch: Scratch,
-    found: tuple[Ints, Floats],
-    since: int,
-    total: int,
-) -> int:
+    shortest: float,
+    room: Workroom,
+    found: Trimmed,
+) -> None:
     """Append the parts of a stretch at whose points nothing is nearer than |d|."""
     low, high = span
-    point = parallel_point(joints, element, low, trimming.distance)
-    limit = abs(trimming.distance) - _ENTERED * trimming.grain
-    before = is_near(arclets, point[0], point[1], limit, scratch)
+    scratch = room.scratch
+    point = parallel_point(parallels, element, low)
+    limit = abs(parallels.distance) - _ENTERED * walls.grain
+    before = is_near(walls, point[0], point[1], limit, scratch)
     began = last = low
     for k in range(1, _COMPARED + 1):
         t = high if k == _COMPARED else low + (high - low) * k / _COMPARED
-        point = parallel_point(joints, element, t, trimming.distance)
-        now = is_near(arclets, point[0], point[1], limit, scratch)
+        point = parallel_point(parallels, element, t)
+        now = is_near(walls, point[0], point[1], limit, scratch)
         if now and before:
-            clear = surfaces(arclets, joints, trimming, element, (last, t), limit, scratch)
+            clear = surfaces(
+                parallels, walls, element, (last, t), (limit, shortest), room.spans, scratch
+            )
             if last < clear < t:
-                began = _changes(arclets, joints, trimming, element, (clear, last), limit, scratch)
-                ends = _changes(arclets, joints, trimming, element, (clear, t), limit, scratch)
-                total = _append(element, (began, ends), found, since, total)
+                began = _changes(parallels, walls, element, (clear, last), limit, scratch)
+                ends = _changes(parallels, walls, element, (clear, t), limit, scratch)
+                _append(element, (began, ends), found)
         elif now:
-            ends = _changes(arclets, joints, trimming, element, (last, t), limit, scratch)
-            total = _append(element, (began, ends), found, since, total)
+            ends = _changes(parallels, walls, element, (last, t), limit, scratch)
+            _append(element, (began, ends), found)
         elif before:
-            began = _changes(arclets, joints, trimming, element, (t, last), limit, scratch)
+            began = _changes(parallels, walls, element, (t, last), limit, scratch)
         last, before = t, now
     if not before:
-        total = _append(element, (began, high), found, since, total)
-    return total
+        _append(element, (began, high), found)
 
 
 @uncounted
 def _changes(
-    arclets: Arclets,
-    joints: Joints,
-    trimming: Trimming,
+    parallels: Parallels,
+    walls: Walls,
     element: tuple[int, int],
     span: tuple[float, float],
     limit: float,
@@ -327,8 +347,8 @@ def _changes(
         m = 0.5 * (clear + near)
         if m in (clear, near):
             break
-        point = parallel_point(joints, element, m, trimming.distance)
-        if is_near(arclets, point[0], point[1], limit, scratch):
+        point = parallel_point(parallels, element, m)
+        if is_near(walls, point[0], point[1], limit, scratch):
             near = m
         else:
             clear = m
@@ -336,19 +356,14 @@ def _changes(
 
 
 @uncounted
-def _append(
-    element: tuple[int, int],
-    span: tuple[float, float],
-    found: tuple[Ints, Floats],
-    since: int,
-    total: int,
-) -> int:
+def _append(element: tuple[int, int], span: tuple[float, float], found: Trimmed) -> None:
     """One more stretch, or a longer last one if that ended here."""
-    elements, spans = found
+    elements, spans = found.elements, found.spans
+    total, since = found.counts[0], found.counts[1]
     if since < total <= spans.shape[0] and spans[total - 1, 1] == span[0]:
         spans[total - 1, 1] = span[1]
-        return total
+        return
     if total < spans.shape[0]:
         elements[total, 0], elements[total, 1] = element
         spans[total, 0], spans[total, 1] = span
-    return total + 1
+    found.counts[0] = total + 1
