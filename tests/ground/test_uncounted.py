@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ast
 import importlib
+import inspect
 import pkgutil
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -32,18 +34,15 @@ UNCOUNTED = [name for name, value in KERNELS.items() if not value.targetoptions.
 
 
 def called(kernel: Any) -> Iterator[Any]:
-    """The kernels that one names, through its module's globals."""
+    """The kernels that one calls, through its module's globals."""
     for node in ast.walk(ast.parse(_source(kernel))):
-        if isinstance(node, ast.Name):
-            value = kernel.py_func.__globals__.get(node.id)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            value = kernel.py_func.__globals__.get(node.func.id)
             if hasattr(value, "py_func"):
                 yield value
 
 
 def _source(kernel: Any) -> str:
-    import inspect
-    import textwrap
-
     return textwrap.dedent(inspect.getsource(kernel.py_func))
 
 

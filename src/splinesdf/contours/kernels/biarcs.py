@@ -54,7 +54,9 @@ def _point(arcs: Floats, weights: Floats, u: float) -> tuple[float, float, float
     return x, y, tx, ty
 
 
-@uncounted
+# Counted, so that it is not compiled into its callers: there sums are added up in another order,
+# and last bits of arcs change. Hence the same with `_farthest`, which calls it.
+@kernel
 def _knot(arcs: Floats, weights: Floats, tangents: Floats, u: float, knot: Floats) -> None:
     """Fill u, the point there, and the tangent: in joints that of both sides."""
     i = int(u)
@@ -149,7 +151,7 @@ def _fits(arcs: Floats, weights: Floats, start: Floats, end: Floats, tolerance: 
     return True
 
 
-@uncounted
+@kernel
 def _farthest(
     arcs: Floats,
     weights: Floats,

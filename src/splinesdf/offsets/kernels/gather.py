@@ -37,7 +37,7 @@ def gather(
     """List the arclets, but for the own chain, that may reach into a disk, and near to a chord.
 
     The disk is x, y, radius; the chord its ends and how near. How many there are, or -1 if they are
-    more than ``most``. The last of all is room.
+    more than ``most``. ``nodes`` is room for the walk.
     """
     x, y, farthest = disk
     segment, beside = chord

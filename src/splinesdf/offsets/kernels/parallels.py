@@ -46,7 +46,7 @@ def parallel_point(
         angle = t * parallels.turn[i]
         c, s = math.cos(angle), math.sin(angle)
         ax, ay = parallels.tangents[i, 2], parallels.tangents[i, 3]
-        tx, ty = c * ax - s * ay, s * ax + c * ay
+        tx, ty = c * ax - s * ay, c * ay + s * ax
         x, y = arcs[i, 1] + distance * ty, arcs[i, 2] - distance * tx
         return x, y, tx, ty, distance * parallels.turn[i], 1.0 / distance
     degree = int(arcs[i, 0])

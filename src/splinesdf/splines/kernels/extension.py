@@ -46,7 +46,7 @@ def fill_drops(border: Border) -> None:
     starts, edges, drops = border.starts, border.edges, border.drops
     nodes = np.empty((_DEPTH, 3), dtype=np.int64)  # first and last knot, number
     for side in range(4):
-        _open(nodes, 0, starts[side], starts[side + 1] - 1, 0)
+        nodes[0, 0], nodes[0, 1], nodes[0, 2] = starts[side], starts[side + 1] - 1, 0
         open_count = 1
         while open_count > 0:
             open_count -= 1
@@ -117,8 +117,8 @@ def _closest(
     best, best_side, at, bend, free = np.inf, 0, 0.0, 0.0, False
     open_count = 4
     for side in range(4):
-        _open(nodes, side, starts[side], starts[side + 1] - 1, 0)
-        nodes[side, 3] = side
+        nodes[side, 0], nodes[side, 1] = starts[side], starts[side + 1] - 1
+        nodes[side, 2], nodes[side, 3] = 0, side
         a, b = _seen_from(domain, side, x, y)
         bounds[side] = _lower_bound(edges, nodes[side, 0], nodes[side, 1], drops[side, 0], a, b)
     while open_count > 0:
