@@ -356,11 +356,8 @@ def _curves(contours: Sequence[Contour], ax: Axes, *, color: str, linewidth: flo
 def _outline(shape: Shape, ax: Axes, *, color: str, linewidth: float) -> None:
     from matplotlib.collections import LineCollection
 
-    ax.add_collection(
-        LineCollection(
-            shape.sample(24), colors=color, linewidths=linewidth, joinstyle="round", zorder=2.0
-        )
-    )
+    style: dict[str, Any] = {"colors": color, "linewidths": linewidth, "joinstyle": "round"}
+    ax.add_collection(LineCollection(shape.sample(24), zorder=2.0, **style))
     ax.autoscale_view()
 
 

@@ -13,8 +13,9 @@ from splinesdf.arclets.tables import FREE
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
-from splinesdf.offsets.loops import Loops, loops_of
+from splinesdf.offsets.loops import loops_of
 from splinesdf.offsets.runs import runs_of
+from splinesdf.offsets.specks import Loops
 from splinesdf.offsets.tables import Runs
 from splinesdf.offsets.trimmed import Stretches, parallels_at, smooth_turn, trimmed
 from splinesdf.shapes.shape import Shape

@@ -14,6 +14,7 @@ from splinesdf.arclets.joints import CUSP, cycles
 from splinesdf.arclets.points import angles
 from splinesdf.distance.exact import signed_distance
 from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.offsets.specks import Loops, without_specks
 from splinesdf.offsets.trimmed import (
     SMOOTH,
     Stretches,
@@ -48,9 +49,6 @@ _OVERLAP = 1e-3
 _BEYOND = 1e-3
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
 _MOVED = 1e-3
-# A loop that is smaller than this share of the tolerance, or of the boundary's loop, is left out:
-# it may be what rounding leaves next to where parallels cross at a small angle.
-_LEAST, _SPECK = 1e-3, 1e-9
 
 
 class Loose(NamedTuple):
@@ -62,18 +60,6 @@ class Loose(NamedTuple):
     one: Ints  # (m,) whose ends
     other: Ints  # (m,) whose starts, one for each
     sizes: Floats  # (n,) of the boundary's loop that each is about
-
-
-class Loops(NamedTuple):
-    """Closed loops, one after the other; each row is a stretch or a bridge, in order."""
-
-    elements: Ints  # (n, 2) see `Stretches`; -1 for a bridge
-    spans: Floats  # (n, 2)
-    start: Floats  # (n, 2) points, relative to the boundary's origin; each is the one before's end
-    end: Floats  # (n, 2)
-    center: Floats  # (n, 2) of a bridge that is an arc, NaN for a straight one
-    smooth: Bools  # (n,) whether the tangent is continuous where the row ends
-    first: Ints  # (n_loops + 1,) loop j has the rows first[j]:first[j + 1]
 
 
 def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: float) -> Loops | None:
@@ -110,7 +96,7 @@ def loops_of(shape: Shape, stretches: Stretches, distance: float, tolerance: flo
     if bridges is None:
         return None
     loops = _as_loops(Stretches(stretches.elements, spans), follows, points, bridges)
-    return _without_specks(loops, sizes, tolerance)
+    return without_specks(loops, sizes, tolerance)
 
 
 def _run_on(shape: Shape, stretches: Stretches, distance: float, smooth: float) -> Ints:
@@ -373,32 +359,4 @@ def _as_loops(stretches: Stretches, follows: Ints, points: Floats, bridges: Floa
     order, first = cycles(follows)
     return Loops(
         elements[order], spans[order], start[order], end[order], center[order], smooth[order], first
-    )
-
-
-def _without_specks(loops: Loops, sizes: Floats, tolerance: float) -> Loops:
-    """Without loops that are smaller both ways than what rounding may leave."""
-    if len(loops.first) < 2:
-        return loops
-    arclet = loops.elements[:, 0]
-    own = np.where(arclet < 0, 0.0, sizes[arclet])
-    own = np.maximum.reduceat(own, loops.first[:-1])
-    least = np.maximum(_LEAST * tolerance, _SPECK * own)
-    low = np.minimum.reduceat(loops.start, loops.first[:-1])
-    high = np.maximum.reduceat(loops.start, loops.first[:-1])
-    rows_each = np.diff(loops.first)
-    # One row alone that is a loop is a speck: none turns by a full turn.
-    kept = (high - low).max(axis=1) > least
-    if kept.all():
-        return loops
-    rows = np.repeat(kept, rows_each)
-    first = np.concatenate([[0], np.cumsum(rows_each[kept])])
-    return Loops(
-        loops.elements[rows],
-        loops.spans[rows],
-        loops.start[rows],
-        loops.end[rows],
-        loops.center[rows],
-        loops.smooth[rows],
-        first,
     )

@@ -13,7 +13,7 @@ import numpy as np
 from splinesdf.arclets.points import angles, off_chord
 from splinesdf.arclets.tables import FREE, ROUND, STRAIGHT
 from splinesdf.ground.arrays import Bools, Floats, Ints
-from splinesdf.offsets.loops import Loops
+from splinesdf.offsets.specks import Loops
 from splinesdf.offsets.tables import Runs
 from splinesdf.offsets.trimmed import SMOOTH, parallels
 from splinesdf.shapes.shape import Shape

@@ -25,6 +25,7 @@ from splinesdf.distance.kernels.branches import find_chains, find_points, side_o
 from splinesdf.distance.kernels.feet import gather
 from splinesdf.distance.tables import Bent
 from splinesdf.fits.kernels.bands import least_of, meets, most_of, seen, seen_in_bands
+from splinesdf.fits.kernels.means import least_of_means
 from splinesdf.fits.tables import Asked, Brackets, Limits, Parts
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
@@ -43,9 +44,6 @@ _SPARE = 0.03
 _DEPTH = 23
 # What a triangle costs where so many points stand for the curve, in triangles without.
 _DEAR = 8
-# Differences that are added to a mean to bound the largest of them, and halvings for the share of
-# each. More: sharper bounds where many branches meet; each costs about 50 ns.
-_ADDED, _SHARE_STEPS = 6, 8
 # Rounding in distances and ordinates, as a share of the largest coordinate.
 _GRAIN = 256 * 2.220446049250313e-16
 
@@ -342,61 +340,8 @@ def _bound(
             value = max(value, models[m, 6 + v])
         errors[v] = scale * value
     if chains > 1 and -lower > enough:
-        lower = max(lower, _mean(models, chains, enough, parts.mean))
+        lower = max(lower, least_of_means(models, chains, enough, parts.mean))
     upper += spare
     if scale < 0.0:
         lower, upper = -upper, -lower
     return lower - grain, upper + grain, most_rest + spare + grain
-
-
-@uncounted
-def _mean(models: Floats, chains: int, enough: float, mean: Floats) -> float:
-    """A lower bound of the largest of all differences on a triangle: that of a mean of some (2.10).
-
-    To the best one, another is added that is large where the mean is smallest, a few times.
-    """
-    one, best = 0, -np.inf
-    for m in range(chains):
-        least = least_of(models[m, 6:])
-        if least > best:
-            one, best = m, least
-    for v in range(6):
-        mean[v] = models[one, 6 + v]
-    rest = models[one, 4]
-    bound = best - rest
-    for _ in range(_ADDED):
-        if -bound <= enough:
-            break
-        worst = 0
-        for v in range(1, 6):
-            if mean[v] < mean[worst]:
-                worst = v
-        other = 0
-        for m in range(chains):
-            if models[m, 6 + worst] > models[other, 6 + worst]:
-                other = m
-        q = models[other, 6:]
-        share = _best_share(mean, q)
-        rest = max(rest, models[other, 4])
-        for v in range(6):
-            mean[v] = share * mean[v] + (1.0 - share) * q[v]
-        bound = max(bound, least_of(mean) - rest)
-    return float(bound)
-
-
-@uncounted
-def _best_share(q: Floats, other: Floats) -> float:
-    """The share of q in the mean of both that makes its smallest coefficient largest."""
-    low, high = 0.0, 1.0
-    for _ in range(_SHARE_STEPS):
-        share = 0.5 * (low + high)
-        least, rising = np.inf, 0.0
-        for k in range(6):
-            value = share * q[k] + (1.0 - share) * other[k]
-            if value < least:
-                least, rising = value, q[k] - other[k]
-        if rising > 0.0:
-            low = share
-        else:
-            high = share
-    return 0.5 * (low + high)
