@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 from splinesdf.arclets.crossings import control_points, degrees
-from splinesdf.arclets.points import end_tangents
+from splinesdf.arclets.points import end_tangents, previous_of
 from splinesdf.arclets.tables import Arclets, Bends
 from splinesdf.ground.arrays import Floats, Ints
 
@@ -52,9 +52,7 @@ def bends(arclets: Arclets) -> Bends:
         vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
         for vectors in end_tangents(arclets)
     )
-    previous = np.full(count, -1)
-    linked = np.flatnonzero(arclets.following >= 0)
-    previous[arclets.following[linked]] = linked
+    previous = previous_of(arclets.following)
     rows = np.concatenate([curvature, leaving, arriving, _extents(arclets, degree)], axis=1)
     return Bends(np.ascontiguousarray(rows), _second_differences(arclets, degree), previous)
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from splinesdf.arclets.crossings import control_points, degrees
-from splinesdf.arclets.points import angles, derivatives_at, points_at
+from splinesdf.arclets.points import angles, derivatives_at, points_at, previous_of
 from splinesdf.arclets.tables import Arclets, Joints
 from splinesdf.arclets.vertices import Vertices
 from splinesdf.ground.arrays import Floats, Ints
@@ -208,8 +208,7 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
     """
     result = np.zeros(len(arclet))
     noise = _APART * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
-    previous = np.empty_like(boundary.following)
-    previous[boundary.following] = np.arange(len(previous))
+    previous = previous_of(boundary.following)
     before, after = arclet.copy(), boundary.following[arclet]
     # Arclets next to a tip are tiny: look farther along both branches until they are apart.
     for _ in range(_ARCLETS):

@@ -51,9 +51,16 @@ def turns(arclets: Arclets) -> Floats:
 def turns_at_ends(arclets: Arclets) -> Floats:
     """By what angle the curve turns to the left at the start and the end of each arclet: (n, 2)."""
     turn = turns(arclets)
-    previous = np.full(len(turn), -1)
-    previous[arclets.following] = np.arange(len(turn))
-    return np.column_stack([turn[previous], turn])
+    previous = previous_of(arclets.following)
+    return np.column_stack([np.where(previous >= 0, turn[previous], 0.0), turn])
+
+
+def previous_of(following: Ints) -> Ints:
+    """What leads to each one, given what each leads to; -1 for none, both ways: (n,)."""
+    linked = np.flatnonzero(following >= 0)
+    previous = np.full(len(following), -1)
+    previous[following[linked]] = linked
+    return previous
 
 
 def angles(first: Floats, second: Floats) -> Floats:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf.arclets.crossings import degrees
-from splinesdf.arclets.points import points_at, tangents_at
+from splinesdf.arclets.points import points_at, previous_of, tangents_at
 from splinesdf.arclets.tables import Arclets, Candidates, Cells, Feet, PassedOver, Searched
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.shapes.parts import MERGE, Parts, chain_ends, groups
@@ -133,9 +133,7 @@ def bounding(outline: Arclets, parts: Parts, sides: Sides, touching: float) -> t
     keep |= tip
     # The ends of a sliver that is closed: its sides are gone, they would be left alone.
     short = ~parts.closed & (sides.length <= MERGE * touching)
-    previous = np.empty(len(keep), dtype=np.int64)
-    previous[parts.following] = np.arange(len(keep))
-    alone = short & ~(keep[parts.following] | keep[previous])
+    alone = short & ~(keep[parts.following] | keep[previous_of(parts.following)])
     return keep & ~alone, left
 
 
