@@ -9,10 +9,10 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.arclets.kernels.nearest import closest_on, room_to_search
-from splinesdf.distance.kernels.branches import find_chains
-from splinesdf.distance.kernels.feet import gather
+from splinesdf.distance.kernels.branches import find_branches
+from splinesdf.distance.kernels.feet import fill_foot_table
 from splinesdf.distance.tables import Bent
-from splinesdf.offsets.kernels.gaps import _least_bend
+from splinesdf.offsets.kernels.clearance import _least_bend
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma
 
@@ -45,13 +45,13 @@ def models_at(shape: ss.Shape, x: float, y: float, r: float) -> np.ndarray:
     ids[: len(kept)] = kept
     near, models = np.zeros((MOST, NEAR)), np.zeros(MODELS)
     px, py = x - boundary.origin[0], y - boundary.origin[1]
-    number, _, exact = gather(
+    number, _, exact = fill_foot_table(
         *(boundary.arcs, bends.rows, bends.second, ids, min(count, MOST), (px, py, r), near)
     )
     if not exact:
         return models[:0]
     bent = Bent(boundary.arcs, boundary.following, bends.rows, bends.second, bends.previous)
-    found = find_chains(bent, ids, number, (px, py, r), near, models)
+    found = find_branches(bent, ids, number, (px, py, r), near, models)
     return models[:found].copy()
 
 

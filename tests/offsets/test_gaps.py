@@ -9,7 +9,7 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.arclets.kernels.nearest import closest_on, point_on, room_to_search
-from splinesdf.offsets.kernels.gaps import (
+from splinesdf.offsets.kernels.clearance import (
     _is_nearer_at_its_ends,
     _second_range,
     _stays_nearer,

@@ -1,1 +1,1 @@
-"""Compiled loops on arrays. No kernel file imports another (see CONTRIBUTING)."""
+"""Short, nearly straight arcs that a curve is cut into: their tree, curvature, joints and kinds."""

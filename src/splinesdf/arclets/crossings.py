@@ -58,7 +58,7 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
             at=np.empty((capacity, 2)),
             found=np.zeros(1, dtype=np.int64),
         )
-        intersections.find_crossings(
+        intersections.fill_crossings(
             arclets.boxes,
             arclets.range,
             arclets.following,

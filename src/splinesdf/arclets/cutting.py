@@ -56,7 +56,7 @@ class Arcs(NamedTuple):
     interval: Floats  # (n, 2) the parameters of that piece at the arc's start and end
 
 
-class Runs(NamedTuple):
+class Sequences(NamedTuple):
     """How arcs follow one another."""
 
     label: Ints  # (n,) which run the arc belongs to
@@ -80,7 +80,7 @@ def build_arclets(control: Floats, starts: Ints, loops: Ints) -> Arclets:
     place = np.empty(len(piece), dtype=np.int64)
     place[order] = np.arange(len(piece))
     label = np.searchsorted(loops, piece, side="right") - 1
-    return assemble(groups, Runs(label, place, np.ones(len(loops) - 1, dtype=bool)), origin)
+    return assemble(groups, Sequences(label, place, np.ones(len(loops) - 1, dtype=bool)), origin)
 
 
 def _near_slow_ends(arcs: Arcs) -> Arcs:
@@ -91,15 +91,15 @@ def _near_slow_ends(arcs: Arcs) -> Arcs:
     return arcs._replace(control=control - ends)
 
 
-def assemble(groups: list[Arcs], runs: Runs, origin: Floats) -> Arclets:
+def assemble(groups: list[Arcs], runs: Sequences, origin: Floats) -> Arclets:
     """Tables and tree of arcs that are short and monotone already.
 
     Parameters
     ----------
     groups : list of Arcs
         One a degree, relative to ``origin``.
-    runs : Runs
-        Of the arcs of all groups, one group after the other. Runs that are near one another
+    runs : Sequences
+        Of the arcs of all groups, one group after the other. Sequences that are near one another
         become neighbors in the tree.
     origin : ndarray, shape (2,)
     """

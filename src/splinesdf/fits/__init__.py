@@ -1,1 +1,1 @@
-"""Fits."""
+"""Fits within a tolerance: the adaptive loop, its trials, and the proof of their error."""

@@ -29,13 +29,13 @@ _MAX_CELLS = 1_000_000
 # distance is as large as what the spline is made from, and slopes become noise.
 _APART = 1e-13
 
-Cells = tuple[int, int]
+CellCounts = tuple[int, int]
 Knots = tuple[ArrayLike, ArrayLike]
 
 
 def interpolate(
     shape: Shape,
-    mesh: Cells | Knots | Sequence[ArrayLike],
+    mesh: CellCounts | Knots | Sequence[ArrayLike],
     *,
     operator: str = "W",
     domain: Box | None = None,
@@ -96,7 +96,7 @@ def interpolate(
 
 
 def _grid(
-    shape: Shape, mesh: Cells | Knots | Sequence[ArrayLike], domain: Box | None
+    shape: Shape, mesh: CellCounts | Knots | Sequence[ArrayLike], domain: Box | None
 ) -> tuple[Grid, str]:
     """The grid that is meant, and the name of its space."""
     try:
@@ -125,7 +125,7 @@ def _grid(
     return grid, space
 
 
-def _counts(first: object, second: object) -> Cells:
+def _counts(first: object, second: object) -> CellCounts:
     try:
         m, n = as_whole(first), as_whole(second)  # type: ignore[arg-type]
     except TypeError as error:

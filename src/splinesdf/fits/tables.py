@@ -46,7 +46,7 @@ class Parts(NamedTuple):
     triangles: Floats  # (n, 12) as in `Asked`
     sizes: Ints  # (n, 3) how often halved, how many arclets (-1: too many), which half
     lists: Ints  # (n, most) those arclets
-    near: Floats  # (most, 9) see `splinesdf.distance.kernels.feet.gather`
-    models: Floats  # (points, 12) see `distance.kernels.branches.find_chains`; differences from it
+    near: Floats  # (most, 9) see `splinesdf.distance.kernels.feet.fill_foot_table`
+    models: Floats  # (points, 12) see `distance.kernels.branches`; differences
     errors: Floats  # (3,) the spline less the distance at the corners
     mean: Floats  # (6,) of some differences

@@ -1,1 +1,1 @@
-"""Ground."""
+"""What every floor stands on: arrays, compilation, threads, files. Nothing of the field."""

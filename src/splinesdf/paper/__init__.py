@@ -1,1 +1,1 @@
-"""Paper."""
+"""The paper's tables and figures, computed again."""

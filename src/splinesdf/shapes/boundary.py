@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from splinesdf.arclets.crossings import control_points, degrees
-from splinesdf.arclets.cutting import Arcs, Runs, assemble, ends, split
+from splinesdf.arclets.cutting import Arcs, Sequences, assemble, ends, split
 from splinesdf.arclets.points import tangents_at
 from splinesdf.arclets.tables import Arclets
 from splinesdf.errors import InputError
@@ -111,7 +111,7 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         arcs_of.append(arcs)
         labels.append(label[parts.chain[rows]])
         places.append(np.where(turned, -parts.place[rows], parts.place[rows]))
-    runs = Runs(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
+    runs = Sequences(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
     boundary = assemble(arcs_of, runs, outline.origin)
     open_end = np.flatnonzero(boundary.following < 0)
     chain = np.flatnonzero(keep)[boundary.run[open_end]]

@@ -1,1 +1,1 @@
-"""Kernels."""
+"""Compiled loops over arclets: closest points, culling, winding numbers, crossings."""

@@ -35,7 +35,7 @@ _LAST_BISECTION = 1e-16
 
 
 @kernel
-def find_crossings(
+def fill_crossings(
     boxes: Floats,
     ranges: Ints,
     following: Ints,

@@ -1,1 +1,1 @@
-"""Kernels."""
+"""Compiled loops over conic arcs: biarcs, and where contours meet."""

@@ -1,1 +1,1 @@
-"""Kernels."""
+"""Compiled loops on branches of the distance and their foot points."""

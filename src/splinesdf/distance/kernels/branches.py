@@ -70,7 +70,7 @@ def _joint(rows: Floats, before: int, after: int, vx: float, vy: float, r: float
 
 
 @uncounted
-def find_chains(
+def find_branches(
     bent: Bent,
     ids: Ints,
     count: int,
@@ -111,14 +111,14 @@ def find_chains(
             continue
         if chains == _CHAINS:
             return 0
-        if not _model(bent, ids, count, (j, last, foot), disk, near, models[chains]):
+        if not _branch_model(bent, ids, count, (j, last, foot), disk, near, models[chains]):
             return 0
         chains += 1
     return chains
 
 
 @uncounted
-def _model(
+def _branch_model(
     bent: Bent,
     ids: Ints,
     count: int,
@@ -249,7 +249,7 @@ def _place(ids: Ints, count: int, arclet: int) -> int:
 
 
 @uncounted
-def find_points(
+def find_point_branches(
     bent: Bent,
     ids: Ints,
     count: int,

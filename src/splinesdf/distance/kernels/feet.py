@@ -12,8 +12,8 @@ import numpy as np
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
 
-# Halley's steps toward a foot on an arclet with a convex squared distance; the third power of a
-# step's error is left, so six are plenty, and a bracket keeps them safe.
+# Newton's steps toward a foot on an arclet with a convex squared distance. The square of a step's
+# error is left, so that five or six do; a bracket halves what leads out of it. Fewer: feet are off.
 _STEPS = 12
 _LAST_STEP = 1e-12
 # Rounding in Bernstein coefficients of a squared distance, see `nearest`, and in differences of
@@ -23,7 +23,7 @@ _BEFORE, _START, _END, _AFTER = 1, 2, 4, 8
 
 
 @uncounted
-def gather(
+def fill_foot_table(
     arcs: Floats,
     rows: Floats,
     second: Floats,

@@ -1,1 +1,1 @@
-"""Kernels."""
+"""Compiled loops that enclose the error of a spline."""

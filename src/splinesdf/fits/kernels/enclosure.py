@@ -21,8 +21,8 @@ import math
 import numpy as np
 
 from splinesdf.arclets.tables import Candidates
-from splinesdf.distance.kernels.branches import find_chains, find_points, side_of
-from splinesdf.distance.kernels.feet import gather
+from splinesdf.distance.kernels.branches import find_branches, find_point_branches, side_of
+from splinesdf.distance.kernels.feet import fill_foot_table
 from splinesdf.distance.tables import Bent
 from splinesdf.fits.kernels.bands import least_of, meets, most_of, seen, seen_in_bands
 from splinesdf.fits.kernels.means import least_of_means
@@ -187,14 +187,16 @@ def _look(
     for v in range(3):
         errors[v] = 0.0
     if count >= 0:
-        count, nearest, exact = gather(bent.arcs, bent.rows, bent.second, ids, count, disk, near)
+        count, nearest, exact = fill_foot_table(
+            bent.arcs, bent.rows, bent.second, ids, count, disk, near
+        )
         parts.sizes[at, 1] = count
         if away + grain < abs(anchor[2]):
             sign = 1 if anchor[2] > 0.0 else -1
         elif exact:
             sign = side_of(bent, ids, count, near, nearest, grain)
     if exact:
-        chains = find_chains(bent, ids, count, disk, near, models)
+        chains = find_branches(bent, ids, count, disk, near, models)
         if (chains > 1 or models[0, 5] > 0.0) and (sign == 0 or nearest <= r + grain):
             chains = 0
         if sign != 0:
@@ -203,7 +205,7 @@ def _look(
             lo, hi, room = value - reach, value + reach, grain
     if chains == 0 and count >= 0 and sign != 0 and depth >= _POINT_DEPTH:
         spare = _SPARE * max(limits.threshold, low) * 0.5 ** (0.5 * depth)
-        chains = find_points(bent, ids, count, disk, spare, near, models)
+        chains = find_point_branches(bent, ids, count, disk, spare, near, models)
         effort = chains // _DEAR
     if chains > 0:
         enough = max(limits.threshold, (1.0 + limits.tight) * low)

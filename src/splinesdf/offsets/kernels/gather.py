@@ -14,7 +14,7 @@ from splinesdf.arclets.kernels.nearest import capsule_distance, point_on, search
 from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
-from splinesdf.offsets.kernels.gaps import bend_range
+from splinesdf.offsets.kernels.clearance import bend_range
 from splinesdf.offsets.kernels.parallels import parallel_point
 from splinesdf.offsets.tables import Parallels, Walls
 

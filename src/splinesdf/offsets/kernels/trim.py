@@ -27,7 +27,7 @@ from splinesdf.arclets.kernels.nearest import room_to_search
 from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
-from splinesdf.offsets.kernels.gaps import bend_range, gap_at, narrow
+from splinesdf.offsets.kernels.clearance import bend_range, clearance_at, clip
 from splinesdf.offsets.kernels.gather import gather, is_near, surfaces
 from splinesdf.offsets.kernels.parallels import parallel_point
 from splinesdf.offsets.tables import Chains, Parallels, Trimmed, Walls, Workroom
@@ -263,7 +263,7 @@ def _trim_stretch(
             base, top = 0, number
         else:
             top = base + number
-        low, high, left, gone = narrow(
+        low, high, left, gone = clip(
             parallels, walls, (element, a, b, reach), (base, number, top), near, scratch
         )
         if gone:
@@ -284,7 +284,7 @@ def _trim_stretch(
             beyond = True
             for k in range(left):
                 j = near[top + k]
-                beyond = beyond and gap_at(parallels, walls, element, j, m, scratch) > 0.0
+                beyond = beyond and clearance_at(parallels, walls, element, j, m, scratch) > 0.0
             if not beyond:
                 continue
         if compared:

@@ -1,1 +1,1 @@
-"""Kernels."""
+"""Compiled loops from coefficients to ordinates, and from those to values."""

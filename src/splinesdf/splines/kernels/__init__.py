@@ -1,1 +1,1 @@
-"""Kernels."""
+"""Compiled loops of the extension beside the domain."""

@@ -8,7 +8,7 @@ from splinesdf.contours.contour import Contour
 from splinesdf.ground.arrays import Floats, Ints, finite
 from splinesdf.meshes import Mesh
 from splinesdf.splines.level_sets.arcs import conic_arcs, shoulders
-from splinesdf.splines.level_sets.edges import Crossings, find_crossings
+from splinesdf.splines.level_sets.edges import EdgeCrossings, find_edge_crossings
 from splinesdf.splines.level_sets.quadratics import (
     Quadratics,
     pair,
@@ -42,7 +42,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
         conic on which the triangle's quadratic takes the level.
     """
     level = finite(level, "level")
-    crossings = find_crossings(mesh, ordinates, level)
+    crossings = find_edge_crossings(mesh, ordinates, level)
     boxes = mesh.local_boxes[crossings.cells]
     quadratics = triangle_quadratics(boxes, ordinates[crossings.cells], level)
     triangle, start, end = _join(crossings, quadratics)
@@ -69,7 +69,7 @@ def contours(mesh: Mesh, ordinates: Floats, level: float, *, y_down: bool = Fals
     return result
 
 
-def _join(crossings: Crossings, quadratics: Quadratics) -> tuple[Ints, Ints, Ints]:
+def _join(crossings: EdgeCrossings, quadratics: Quadratics) -> tuple[Ints, Ints, Ints]:
     """Arcs as triangle, first and last crossing: each starts where the way leaves the low side."""
     triangles, first, count = np.unique(crossings.triangle, return_index=True, return_counts=True)
     simple = count == 2

@@ -20,8 +20,8 @@ from splinesdf.spaces.quadratic_c1 import TRIANGLES, center_ordinates
 _SLACK = 1e-13
 
 
-class Crossings(NamedTuple):
-    """Crossings, and what each triangle sees of them.
+class EdgeCrossings(NamedTuple):
+    """EdgeCrossings, and what each triangle sees of them.
 
     The last three are sorted by triangle and counterclockwise along its boundary.
     """
@@ -42,7 +42,7 @@ class _Segments(NamedTuple):
     part: Floats  # (s, 2) parameters of these points along the side
 
 
-def find_crossings(mesh: Mesh, ordinates: Floats, level: float) -> Crossings:
+def find_edge_crossings(mesh: Mesh, ordinates: Floats, level: float) -> EdgeCrossings:
     """All crossings of ``s = level`` with sides and half-diagonals of the cells.
 
     A value equal to the level counts as above it.
@@ -94,7 +94,7 @@ def find_crossings(mesh: Mesh, ordinates: Floats, level: float) -> Crossings:
             order.append(np.full(len(rows), place))
             segment.append(len(shared) + 4 * rows + v)
             ahead.append(np.full(len(rows), place == 2.0))
-    return Crossings(
+    return EdgeCrossings(
         cells,
         position[found],
         *_events(
@@ -111,7 +111,7 @@ def find_crossings(mesh: Mesh, ordinates: Floats, level: float) -> Crossings:
 def _events(
     triangle: Ints, order: Floats, segment: Ints, ahead: Bools, number: Ints, below: Bools
 ) -> tuple[Ints, Ints, Bools]:
-    """Crossings as the triangles see them, in order along their boundaries."""
+    """EdgeCrossings as the triangles see them, in order along their boundaries."""
     slot = np.array([0, 1])
     crossing = number[segment]
     # The first root leaves the side below if the segment starts there, the second the other way

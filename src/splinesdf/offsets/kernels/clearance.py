@@ -28,7 +28,7 @@ _STEPS = 80
 
 
 @uncounted
-def narrow(
+def clip(
     parallels: Parallels,
     walls: Walls,
     stretch: tuple[tuple[int, int], float, float, float],
@@ -98,8 +98,8 @@ def narrow(
         if lowest > 0.0:
             continue
         if abs(slope) > slack + max(abs(under), abs(over)) * length:
-            at_a = gap_at(parallels, walls, element, j, a, scratch)
-            at_b = gap_at(parallels, walls, element, j, b, scratch)
+            at_a = clearance_at(parallels, walls, element, j, a, scratch)
+            at_b = clearance_at(parallels, walls, element, j, b, scratch)
             if at_a <= 0.0 and at_b <= 0.0:
                 return a, b, 0, True
             if at_a < 0.0 < at_b:
@@ -301,7 +301,7 @@ def _least_bend(row: Floats, foot: tuple[float, float, float, float], length: fl
 
 
 @uncounted
-def gap_at(
+def clearance_at(
     parallels: Parallels,
     walls: Walls,
     element: tuple[int, int],
@@ -343,8 +343,8 @@ def _passes(
 ) -> float:
     """Where the gap to arclet j, below zero at the first end, is zero: secants in a bracket."""
     low, high = ends
-    f_low = gap_at(parallels, walls, element, j, low, scratch)
-    f_high = gap_at(parallels, walls, element, j, high, scratch)
+    f_low = clearance_at(parallels, walls, element, j, low, scratch)
+    f_high = clearance_at(parallels, walls, element, j, high, scratch)
     side = 0
     t = high
     for step in range(_STEPS):
@@ -354,7 +354,7 @@ def _passes(
             t = 0.5 * (low + high)
         if t in (low, high):
             break
-        f = gap_at(parallels, walls, element, j, t, scratch)
+        f = clearance_at(parallels, walls, element, j, t, scratch)
         if f == 0.0:
             break
         # Illinois: an end that stays loses half of its weight
