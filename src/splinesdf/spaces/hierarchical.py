@@ -1,5 +1,7 @@
 """The truncated hierarchical space on a quadtree, without writing down its basis.
 
+The basis is that of Giannelli, Jüttler and Speleers (THB-splines, 2012).
+
 The coefficient of function (i, j) of level l is the quasi-interpolant's functional of that level
 if the function's whole support, the 3 x 3 cells around (i, j), lies in cells of level l or finer;
 else it comes from level l - 1 by subdivision. Then every leaf is an ordinary cell of its level, and

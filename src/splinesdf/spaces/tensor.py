@@ -1,4 +1,7 @@
-"""The space S₂¹ on a grid: one coefficient a cell and a ring of cells around the domain."""
+"""The space S₂¹ on a grid: one coefficient a cell and a ring of cells around the domain.
+
+The B-spline of a cell is the Zwart-Powell element, the box spline M₁₁₁₁, on unequal cells.
+"""
 
 from __future__ import annotations
 

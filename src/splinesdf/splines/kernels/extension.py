@@ -1,5 +1,7 @@
 """Outside the domain: the least of s(q) + |p - q| over the points q of its border.
 
+This is the 1-Lipschitz extension of McShane and Whitney, from the border.
+
     side 0: bottom, 1: right, 2: top, 3: left; each runs in the direction of its axis
 
               p ·.          a: where p is along the line of a side
