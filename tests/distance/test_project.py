@@ -7,6 +7,7 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.distance.candidates import closest_candidates
+from splinesdf.ground.blocks import processors
 from splinesdf.shapes.shape import evaluate_bezier
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma
@@ -223,5 +224,5 @@ def test_many_points_take_bounded_memory() -> None:
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     # The result takes 8 bytes a point; each thread's block of 131,072 some 150 bytes a point.
-    threads = ss.distance.processors()
+    threads = processors()
     assert peak < 8 * len(points) + threads * 131_072 * 200
