@@ -1,6 +1,7 @@
 """Contours of lines and circular arcs: near, smooth, few, and what is one already stays."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -206,3 +207,18 @@ def test_short_legs_are_told_by_their_length_not_their_place(way: tuple[float, f
     pieces = np.stack([points[:-2:2], points[1:-1:2], points[2::2]], axis=1)
     smooth = _smooth_joints(False, pieces, 2.0**-32)
     assert smooth.tolist() == [False, True, True, False]
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+def test_the_same_biarcs_whichever_joint_is_the_origin(tolerance: float) -> None:
+    """How closely a biarc is measured goes with its length, not with how far out it ends."""
+    arcs = np.array([[[1.0, 0.5], [2.0, 3.0], [4.0, 1.0]], [[4.0, 1.0], [6.0, -1.0], [9.0, 2.0]]])
+    chain = Contour(arcs, np.array([1.0, 1.5]), closed=False)
+    here = ss.as_arcs(chain, tolerance=tolerance)
+    assert len(here.arcs) >= 10
+    for joint in here.arcs[:, 2]:
+        # On a lattice, so that moving it rounds nothing.
+        way = np.round(joint * 2.0**30) / 2.0**30
+        there = ss.as_arcs(replace(chain, arcs=arcs - way), tolerance=tolerance)
+        assert len(there.arcs) == len(here.arcs)
+        assert_allclose(there.arcs + way, here.arcs, rtol=0.0, atol=1e-11)
