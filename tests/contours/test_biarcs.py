@@ -1,6 +1,7 @@
 """Contours of lines and circular arcs: near, smooth, few, and what is one already stays."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import splinesdf as ss
+from splinesdf.contours.biarcs import _smooth_joints
 from splinesdf.contours.conics import Kind, classify, elements, rounding
 from splinesdf.contours.contour import Contour, halve
 from tests.chains import circle, ellipse, from_arc, line, mixed_chain, open_chain, slot, turned
@@ -187,3 +189,36 @@ def test_the_same_arcs_wherever_it_lies(way: tuple[float, float]) -> None:
         home = ss.as_arcs(Contour(arcs, np.ones(3), closed=False), tolerance=1e-2)
         assert len(result.arcs) == len(home.arcs)
         assert_allclose(result.arcs - way, home.arcs, rtol=0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("way", [(0.0, 0.0), (-1.0, 0.0), (64.0, -32.0), (-4096.0, 0.0)])
+def test_short_legs_are_told_by_their_length_not_their_place(way: tuple[float, float]) -> None:
+    """Where a leg is as long as 4096 grains, rounding turns it by 8 / 4096, not by 1e-3 elsewhere.
+
+    Long, short, long: both joints of the short piece turn by a thousandth, that of two long ones
+    as well.
+    """
+    legs = np.array([0.5, 0.5, 2.0**-20, 2.0**-20, 0.5, 0.5, 0.5, 0.5])
+    angles = 1e-3 * np.array([0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0])
+    steps = legs[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    points = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+    # On a lattice far below the grain, so that moving it rounds nothing.
+    points = np.round(points * 2.0**40) / 2.0**40 + way
+    pieces = np.stack([points[:-2:2], points[1:-1:2], points[2::2]], axis=1)
+    smooth = _smooth_joints(False, pieces, 2.0**-32)
+    assert smooth.tolist() == [False, True, True, False]
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+def test_the_same_biarcs_whichever_joint_is_the_origin(tolerance: float) -> None:
+    """How closely a biarc is measured goes with its length, not with how far out it ends."""
+    arcs = np.array([[[1.0, 0.5], [2.0, 3.0], [4.0, 1.0]], [[4.0, 1.0], [6.0, -1.0], [9.0, 2.0]]])
+    chain = Contour(arcs, np.array([1.0, 1.5]), closed=False)
+    here = ss.as_arcs(chain, tolerance=tolerance)
+    assert len(here.arcs) >= 10
+    for joint in here.arcs[:, 2]:
+        # On a lattice, so that moving it rounds nothing.
+        way = np.round(joint * 2.0**30) / 2.0**30
+        there = ss.as_arcs(replace(chain, arcs=arcs - way), tolerance=tolerance)
+        assert len(there.arcs) == len(here.arcs)
+        assert_allclose(there.arcs + way, here.arcs, rtol=0.0, atol=1e-11)

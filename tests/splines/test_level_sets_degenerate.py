@@ -146,6 +146,7 @@ def test_area_below_the_level_is_what_pixels_say(
     st.sampled_from([0.0, 0.25, 0.3, 0.5, -1.0]),
     st.sampled_from([-60, -30, 30, 60]),
 )
+@example(3, "hierarchical", "few", 0.25, 30)  # open parts of rings, if slack is absolute
 def test_level_sets_scale_with_the_values(
     seed: int, space: str, draw: str, level: float, power: int
 ) -> None:
