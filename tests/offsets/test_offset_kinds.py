@@ -120,6 +120,17 @@ def test_far_offsets_below_what_the_hull_is_good_for_are_refused_at_once() -> No
     assert ss.offset(SQUARE, -1e6, tolerance=1e-3) == []
 
 
+@pytest.mark.parametrize("distances", [[0.1, 1e9], [1e9, 0.1], [1e9]])
+def test_the_farthest_of_several_distances_says_what_rounding_leaves_room_for(
+    distances: list[float],
+) -> None:
+    # The hull is good for 5e-9 out there; 1e-13 of the distance is the rounding.
+    with pytest.raises(ss.InputError, match=r"of at least 0\.0001, above the rounding"):
+        ss.offset(SQUARE, distances, tolerance=1e-6)
+    found = ss.offset(SQUARE, distances, tolerance=1.1e-4)
+    assert [contour.distance for contour in found] == distances
+
+
 def test_the_default_tolerance_knows_the_distance() -> None:
     contours = ss.offset(SQUARE, [0.01, -0.5])
     assert {contour.tolerance for contour in contours} == {1e-4}
