@@ -11,8 +11,9 @@ from splinesdf.arclets.tables import FREE, ROUND, STRAIGHT
 from splinesdf.contours.contour import Contour, evaluate
 from splinesdf.contours.kernels.meetings import find_meetings
 from splinesdf.contours.nesting import enclosed, nested
+from splinesdf.offsets.loops import _run_on
 from splinesdf.offsets.offset import deviation
-from splinesdf.offsets.trimmed import parallels, trimmed
+from splinesdf.offsets.trimmed import SMOOTH, parallels, trimmed
 from tests.chains import circle
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma
@@ -203,3 +204,27 @@ def test_the_side_of_a_cusp_is_that_of_its_branches(hole: bool) -> None:
     cusps = np.abs(np.abs(turn) - np.pi) < 1e-3
     assert np.count_nonzero(cusps) == 4
     assert (np.sign(turn[cusps]) == (-1.0 if hole else 1.0)).all()
+
+
+def egg(turn: float) -> ss.Shape:
+    """Two cubics that meet in (-1, 0), smoothly, and in (1, 0), where they turn by an angle."""
+    up = [[1, 0], [1 - 1.1 * np.sin(turn), 1.1 * np.cos(turn)], [-1, 1.3], [-1, 0]]
+    low = [[-1, 0], [-1, -0.6], [1, -0.9], [1, 0]]
+    return ss.Shape.from_pieces([[np.array(up, dtype=float), np.array(low, dtype=float)]])
+
+
+@pytest.mark.parametrize("distance", [0.2, -0.2])
+@pytest.mark.parametrize("turn", [0.4 * SMOOTH, -0.4 * SMOOTH])
+def test_a_turn_too_small_to_see_leaves_the_arcs_as_they_are(turn: float, distance: float) -> None:
+    (smooth,) = ss.offset(egg(0.0), distance, tolerance=1e-3)
+    (bent,) = ss.offset(egg(turn), distance, tolerance=1e-3)
+    # Where a tangent may jump an arc ends: one more at each joint of arclets.
+    assert len(bent.arcs) == len(smooth.arcs) == 6
+    assert bent.length == pytest.approx(smooth.length, abs=1e-3)
+    # Each parallel runs on into the next, and none has to look for another's start.
+    stretches = trimmed(egg(turn), distance, 1e-3, SMOOTH)
+    assert (_run_on(egg(turn), stretches, distance, SMOOTH) >= 0).all()
+    # A turn that is none too small is a corner: an arc around it, or two ends that are to meet.
+    seen = egg(np.copysign(1e-3, turn))
+    loose = _run_on(seen, trimmed(seen, distance, 1e-3, SMOOTH), distance, SMOOTH) < 0
+    assert np.count_nonzero(loose) == (turn * distance < 0.0)
