@@ -1,6 +1,7 @@
 """A tour of all public operations, compiled anew with bounds checked and references counted.
 
-One process answers three questions, as compiling everything takes a minute: does an index leave its
+Run by CI, and by ``python -m pytest -n 0 -m anew tests/ground``. One process answers three
+questions, as compiling everything takes a minute: does an index leave its
 array, is anything compiled for two signatures, and do kernels that count no references answer as
 their counted twins do?
 """
@@ -18,6 +19,7 @@ import pytest
 
 import splinesdf
 
+pytestmark = pytest.mark.anew
 ROOT = Path(__file__).parents[2]
 # What checks of bounds change in how sums are ordered, on the way to an arc's control points. A
 # reference that is given back too early leaves other arrays' numbers: all digits.
