@@ -312,3 +312,15 @@ def test_a_line_to_and_fro_across_a_curve_cuts_no_sliver_off_it() -> None:
     boundary = icons()["dribbble"].boundary
     length = np.hypot(*(boundary.end - boundary.start).T)
     assert length.min() > 1e-6
+
+
+@pytest.mark.parametrize("first", range(5))
+@pytest.mark.parametrize("chamfer", [1e-16, 1e-15, 3e-15, 1e-14, 3e-14, 1e-13])
+def test_a_side_next_to_nothing_costs_no_contour(chamfer: float, first: int) -> None:
+    """It begins and ends where the rest of its contour does, which passed for a repetition of it."""
+    cut = 1.0 - chamfer
+    corners = [(-1.0, -1.0), (cut, -1.0), (1.0, -cut), (1.0, 1.0), (-1.0, 1.0)]
+    shape = ss.Shape.from_points(np.roll(np.array(corners), first, axis=0))
+    found = ss.signed_distance(shape, [(0.0, 0.0), (2.0, 0.0), (0.5, -0.75)])
+    assert found == pytest.approx([-1.0, 1.0, -0.25], abs=1e-12)
+    assert [len(c.arcs) > 3 for c in ss.offset(shape, 0.3)] == [True]

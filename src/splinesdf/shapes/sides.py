@@ -26,6 +26,10 @@ _ON_TOP = 0.25
 # the size: a width that grows like the square or the cube of the length has grown out of it. And
 # below the second share, whatever it is, to keep it costs no more than its length.
 _LONGEST_TIP, _SHORTEST_SLIT = 1e-4, 1e-7
+# Chains on top of each other are of one length, but for what counts as touching: the shorter one is
+# more than this share of the longer. Larger: tiny ones, whose lengths are rounding, count
+# twice; smaller: a whole contour passes for a repetition of its own shortest side.
+_ALIKE = 0.25
 
 
 class Sides(NamedTuple):
@@ -181,7 +185,9 @@ def _repeated(outline: Arclets, parts: Parts, sides: Sides, keep: Bools, touchin
     turned = meet(ends[0, chain], ends[1, other]) & meet(ends[1, chain], ends[0, other])
     # Whole loops need not begin at the same place.
     both_closed = parts.closed[chain] & parts.closed[other]
-    linked = (same | turned | both_closed) & keep[other] & keep[chain]
+    # A contour with a side that is next to nothing has the ends of that side, but lies not on it.
+    shorter, longer = np.sort([sides.length[chain], sides.length[other]], axis=0)
+    linked = (same | turned | both_closed) & keep[other] & keep[chain] & (shorter > _ALIKE * longer)
     line = np.bincount(parts.chain) == 1
     line[parts.chain] &= degrees(outline)[parts.arclet] == 1
     line &= keep & (sides.partner >= 0)
