@@ -317,7 +317,7 @@ def test_a_line_to_and_fro_across_a_curve_cuts_no_sliver_off_it() -> None:
 @pytest.mark.parametrize("first", range(5))
 @pytest.mark.parametrize("chamfer", [1e-16, 1e-15, 3e-15, 1e-14, 3e-14, 1e-13])
 def test_a_side_next_to_nothing_costs_no_contour(chamfer: float, first: int) -> None:
-    """It begins and ends where the rest of its contour does, which passed for a repetition of it."""
+    """It begins and ends where the rest of its contour does, which passed for its repetition."""
     cut = 1.0 - chamfer
     corners = [(-1.0, -1.0), (cut, -1.0), (1.0, -cut), (1.0, 1.0), (-1.0, 1.0)]
     shape = ss.Shape.from_points(np.roll(np.array(corners), first, axis=0))
