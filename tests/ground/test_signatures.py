@@ -1,9 +1,8 @@
 """A tour of all public operations, compiled anew with bounds checked and references counted.
 
 Run by CI, and by ``python -m pytest -n 0 -m anew tests/ground``. One process answers three
-questions, as compiling everything takes a minute: does an index leave its
-array, is anything compiled for two signatures, and do kernels that count no references answer as
-their counted twins do?
+questions, as compiling everything takes a minute: does an index leave its array, is anything
+compiled for two signatures, and do kernels that count no references answer as their counted twins?
 """
 
 from __future__ import annotations

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.arclets.kernels.nearest import closest_on, point_on, room_to_search
+from splinesdf.arclets.kernels.arclet import point_on
+from splinesdf.arclets.kernels.nearest import closest_on, room_to_search
 from splinesdf.offsets.kernels.clearance import (
     _is_nearer_at_its_ends,
     _second_range,

@@ -17,6 +17,7 @@ import math
 
 import numpy as np
 
+from splinesdf.arclets.kernels.arclet import point_on
 from splinesdf.arclets.tables import Interpolation, Met
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
@@ -128,9 +129,9 @@ def _meet(
     for end in range(4):
         a, b = (i, j) if end < 2 else (j, i)
         t = float(end % 2)
-        x, y = _point(arcs, a, t)
+        x, y = point_on(arcs, a, t)
         other_t = _at(arcs, b, ux, uy, x * ux + y * uy)
-        other_x, other_y = _point(arcs, b, other_t)
+        other_x, other_y = point_on(arcs, b, other_t)
         if math.hypot(x - other_x, y - other_y) > _STEEP * tolerance:
             continue
         if end < 2:
@@ -252,17 +253,6 @@ def _reach(arcs: Floats, i: int, ux: float, uy: float) -> tuple[float, float]:
 
 
 @uncounted
-def _point(arcs: Floats, i: int, t: float) -> tuple[float, float]:
-    if t == 1.0:
-        return arcs[i, 1], arcs[i, 2]
-    x = y = 0.0
-    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
-        x = (x + arcs[i, k]) * t
-        y = (y + arcs[i, k + 1]) * t
-    return arcs[i, 3] + x, arcs[i, 4] + y
-
-
-@uncounted
 def _at(arcs: Floats, i: int, ux: float, uy: float, u: float) -> float:
     """The parameter at which arclet i is at u, or the end that is nearer to it."""
     start = arcs[i, 3] * ux + arcs[i, 4] * uy
@@ -302,8 +292,8 @@ def _at(arcs: Floats, i: int, ux: float, uy: float, u: float) -> float:
 
 @uncounted
 def _offset(arcs: Floats, i: int, j: int, ux: float, uy: float, u: float) -> float:
-    x, y = _point(arcs, i, _at(arcs, i, ux, uy, u))
-    other_x, other_y = _point(arcs, j, _at(arcs, j, ux, uy, u))
+    x, y = point_on(arcs, i, _at(arcs, i, ux, uy, u))
+    other_x, other_y = point_on(arcs, j, _at(arcs, j, ux, uy, u))
     return float((y - other_y) * ux - (x - other_x) * uy)
 
 

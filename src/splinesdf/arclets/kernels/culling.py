@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from splinesdf.arclets.kernels.arclet import from_axis
 from splinesdf.arclets.tables import Cells
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
@@ -164,7 +165,7 @@ def _cull(
     while size > 0:
         size -= 1
         node = int(stack[size])
-        nx, ny = _from_axis(tree, node, x, y)
+        nx, ny = from_axis(tree, node, x, y)
         axis = math.sqrt(nx * nx + ny * ny)
         margin = 2.0 * reach
         if far and axis > 0.0:
@@ -199,7 +200,7 @@ def _near_point(
     while size > 0:
         size -= 1
         node = int(stack[size])
-        wx, wy = _from_axis(tree, node, x, y)
+        wx, wy = from_axis(tree, node, x, y)
         if math.sqrt(wx * wx + wy * wy) - tree[node, 5] >= best:
             continue
         first, last = int(tree[node, 6]), int(tree[node, 7])
@@ -210,8 +211,8 @@ def _near_point(
                 best, mx, my = distance, x - px, y - py
             continue
         left, right = node + 1, node + 2 * ((first + last) // 2 - first)
-        ux, uy = _from_axis(tree, left, x, y)
-        vx, vy = _from_axis(tree, right, x, y)
+        ux, uy = from_axis(tree, left, x, y)
+        vx, vy = from_axis(tree, right, x, y)
         if ux * ux + uy * uy < vx * vx + vy * vy:
             left, right = right, left
         stack[size], stack[size + 1] = left, right
@@ -233,12 +234,3 @@ def _about_nearest(arcs: Floats, i: int, x: float, y: float) -> tuple[float, flo
         px = (px + arcs[i, k]) * t
         py = (py + arcs[i, k + 1]) * t
     return arcs[i, 3] + px, arcs[i, 4] + py
-
-
-@uncounted
-def _from_axis(tree: Floats, node: int, x: float, y: float) -> tuple[float, float]:
-    """The vector to the point from the nearest one of a capsule's segment."""
-    wx, wy = x - tree[node, 0], y - tree[node, 1]
-    dx, dy = tree[node, 2], tree[node, 3]
-    share = min(max((wx * dx + wy * dy) * tree[node, 4], 0.0), 1.0)
-    return wx - share * dx, wy - share * dy

@@ -18,6 +18,7 @@ import math
 
 import numpy as np
 
+from splinesdf.arclets.kernels.arclet import SLACK, capsule_distance, point_on
 from splinesdf.arclets.tables import Candidates, Cells, Feet, PassedOver, Scratch, Searched
 from splinesdf.ground.arrays import Bools, Floats
 from splinesdf.ground.jit import kernel, uncounted
@@ -37,10 +38,7 @@ _STEPS = 80
 _STACK = 128
 # Straight arclets that are tried one after the other at the bottom of the tree of a polygon.
 _LINES = 8
-# A bound that the distance is compared with is raised by this share, so that rounding in it
-# cannot hide the minimum.
-_SLACK = 1.0 + 1e-12
-# And by this share of the largest coordinate, the rounding in points of the curve.
+# A bound is raised by this share of the largest coordinate, the rounding in points of the curve.
 _GRAIN = 16 * 2.220446049250313e-16
 
 
@@ -87,7 +85,7 @@ def _walk(
     tree, arcs = searched.tree, searched.arcs
     # Rounding in a distance next to the curve.
     grain = _GRAIN * searched.largest
-    limit = feet.farthest * _SLACK + grain
+    limit = feet.farthest * SLACK + grain
     alone = passed_over.own.shape[0] > 0
     own = -1
     ignored = passed_over.within * abs(passed_over.within)
@@ -100,7 +98,7 @@ def _walk(
             own = passed_over.own[i]
         # The distance is 1-Lipschitz; what is added is for rounding.
         step = math.sqrt((px - last_x) ** 2 + (py - last_y) ** 2)
-        best = min((last_distance + step) * _SLACK + grain, limit)
+        best = min((last_distance + step) * SLACK + grain, limit)
         while True:
             for j in range(count):
                 # nearest ones last, on top of the stack
@@ -184,35 +182,6 @@ def search(
             nodes[size], bounds[size] = left, near_bound
             size += 1
     return best, found, found_at
-
-
-@uncounted
-def capsule_distance(tree: Floats, node: int, px: float, py: float) -> float:
-    """Nothing under a node of the tree is nearer to a point than this."""
-    wx, wy = _from_axis(tree, node, px, py)
-    # Far away, rounding in the distance itself could exceed the capsule's own margin.
-    return float(math.sqrt(wx * wx + wy * wy) * (2.0 - _SLACK) - tree[node, 5])
-
-
-@uncounted
-def _from_axis(tree: Floats, node: int, px: float, py: float) -> tuple[float, float]:
-    """The vector to the point from the nearest one of a capsule's segment."""
-    wx, wy = px - tree[node, 0], py - tree[node, 1]
-    dx, dy = tree[node, 2], tree[node, 3]
-    share = min(max((wx * dx + wy * dy) * tree[node, 4], 0.0), 1.0)
-    return wx - share * dx, wy - share * dy
-
-
-@uncounted
-def point_on(arcs: Floats, i: int, t: float) -> tuple[float, float]:
-    """The point of arclet i at a parameter."""
-    if t == 1.0:
-        return arcs[i, 1], arcs[i, 2]
-    x = y = 0.0
-    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
-        x = (x + arcs[i, k]) * t
-        y = (y + arcs[i, k + 1]) * t
-    return arcs[i, 3] + x, arcs[i, 4] + y
 
 
 @uncounted

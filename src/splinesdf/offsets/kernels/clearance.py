@@ -13,7 +13,8 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.kernels.nearest import closest_on, point_on
+from splinesdf.arclets.kernels.arclet import point_on
+from splinesdf.arclets.kernels.nearest import closest_on
 from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted

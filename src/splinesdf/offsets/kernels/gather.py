@@ -10,7 +10,8 @@ from typing import cast
 
 import numpy as np
 
-from splinesdf.arclets.kernels.nearest import capsule_distance, point_on, search
+from splinesdf.arclets.kernels.arclet import capsule_distance, point_on
+from splinesdf.arclets.kernels.nearest import search
 from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
