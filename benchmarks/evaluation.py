@@ -32,9 +32,9 @@ from scipy.ndimage import map_coordinates, spline_filter
 import splinesdf as ss
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.paper import tables as paper
-from splinesdf.spaces import hierarchical_ordinates
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
+from tests.trees import hierarchical_ordinates
 
 CELLS, SIDE, ROUNDS = 128, 700, 7
 NEAR = 0.05

@@ -63,6 +63,7 @@ KINDS: dict[str, str] = {
                 "shape",
                 "space",
                 "operator",
+                "element",
                 "certify",
                 "coarse",
                 "once",

@@ -216,12 +216,11 @@ def plot_mesh(
     """
     from matplotlib.collections import LineCollection
 
-    mesh = spline_or_mesh
-    if isinstance(mesh, SplineSDF):
-        _upright(ax, mesh.y_down)
-        mesh = mesh.mesh
+    if isinstance(spline_or_mesh, SplineSDF):
+        mesh, y_down = spline_or_mesh.mesh, spline_or_mesh.y_down
     else:
-        _upright(ax, shape is not None and shape.y_down)
+        mesh, y_down = spline_or_mesh, shape is not None and shape.y_down
+    _upright(ax, y_down)
     # The left and the lower side of every cell; only the domain's other two are nobody's.
     x0, y0, x1, y1 = mesh.boxes.T
     left, low, right, high = mesh.domain

@@ -10,6 +10,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.fits import certificate as measure
 from splinesdf.fits.kernels.enclosure import steepest
+from splinesdf.fits.target import ShapeTarget
 from splinesdf.meshes import Quadtree
 from splinesdf.splines.quasi import quasi_interpolate
 
@@ -78,8 +79,9 @@ def test_brackets_hold_in_every_cell(name: str, factor: float) -> None:
         boxes = mesh.boxes
         center = ss.signed_distance(shape, 0.5 * (boxes[:, :2] + boxes[:, 2:]))
         threshold = 1e-3 * half
+        wanted = measure.Wanted(threshold)
         known = measure.cell_errors(
-            shape, spline, np.arange(len(boxes)), center, NO_BANDS, measure.Wanted(threshold)
+            ShapeTarget(shape), spline, np.arange(len(boxes)), center, NO_BANDS, wanted
         )
         found = sampled(shape, spline)
         assert (found <= known.high + ROUNDING).all()

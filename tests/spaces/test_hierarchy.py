@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import splinesdf as ss
-from splinesdf.fits import trials as trial_module
-from splinesdf.fits.trials import TreeTrial
+from splinesdf.fits.target import ShapeTarget
+from splinesdf.fits.trials import Trial
 from splinesdf.meshes import Quadtree
-from splinesdf.spaces import hierarchical_ordinates
 from splinesdf.spaces.hierarchical import leaves, owned, quadtree, refined, roots
+from splinesdf.spaces.quadratic import QUADRATIC
+from splinesdf.spaces.space import first_space
 from tests import naive_tree
 from tests.named_shapes import UNIT, gamma
+from tests.trees import hierarchical_ordinates
 
 ROOTS = [(1, 1), (1, 4), (3, 1), (2, 3), (4, 4)]
 
@@ -73,17 +74,17 @@ def test_a_bad_quarter_gets_functions_of_the_next_level() -> None:
 
 
 @pytest.mark.parametrize(("operator", "most"), [("S", 1.7), ("P", 1.7), ("V", 1.7), ("W", 2.6)])
-def test_no_distance_is_asked_twice_between_levels(
-    operator: str, most: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_distance_is_asked_twice_between_levels(operator: str, most: float) -> None:
     asked: list[np.ndarray] = []
 
-    def recorded(shape: ss.Shape, points: np.ndarray) -> np.ndarray:
-        asked.append(points)
-        return ss.signed_distance(shape, points)
+    class Recorded(ShapeTarget):
+        def values(self, points: np.ndarray) -> np.ndarray:
+            asked.append(points)
+            return super().values(points)
 
-    monkeypatch.setattr(trial_module, "signed_distance", recorded)
-    trial = TreeTrial(gamma("gamma2"), UNIT, (4, 4), operator)
+    shape = gamma("gamma2")
+    space = first_space("hierarchical", QUADRATIC, UNIT, (4, 4))
+    trial = Trial(Recorded(shape), shape, space, operator)
     for _ in range(5):
         size = np.abs(trial.center)
         bad = np.flatnonzero(size < np.median(size))

@@ -80,7 +80,7 @@ def test_the_one_linear_dependence_and_the_dimension() -> None:
 
 def test_cells_ordinates_equal_the_four_bernstein_quadratics() -> None:
     # The power form against the definition: barycentric coordinates in each of the triangles.
-    from splinesdf.spaces.quadratic_c1 import TRIANGLES, center_ordinates
+    from splinesdf.spaces.quadratic import TRIANGLES, center_ordinates
 
     random = np.random.default_rng(1)
     ordinates = random.normal(size=(1, 8))

@@ -13,13 +13,14 @@ from hypothesis import strategies as st
 
 import splinesdf as ss
 from splinesdf.meshes import Grid, Mesh, Quadtree
-from splinesdf.spaces import hierarchical_ordinates, tensor_ordinates
-from splinesdf.spaces.quadratic_c1 import TRIANGLES, center_ordinates
+from splinesdf.spaces.quadratic import TRIANGLES, center_ordinates
+from splinesdf.spaces.tensor import tensor_ordinates
 from splinesdf.splines.spline import SplineSDF
 from tests.examples import examples
 from tests.naive_tree import cells_at, refine
 from tests.named_shapes import UNIT, gamma
 from tests.spaces.test_spaces import random_quadtree
+from tests.trees import hierarchical_ordinates
 
 RANDOM = np.random.default_rng(5)
 TOLERANCE = 2e-3

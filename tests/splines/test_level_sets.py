@@ -13,10 +13,10 @@ from scipy import ndimage
 import splinesdf as ss
 from splinesdf.contours.contour import Contour, evaluate
 from splinesdf.meshes import Grid, Quadtree
-from splinesdf.spaces import hierarchical_ordinates
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 from tests.naive_tree import refine
+from tests.trees import hierarchical_ordinates
 
 PARAMETERS = np.linspace(0.0, 1.0, 7)
 

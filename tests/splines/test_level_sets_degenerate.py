@@ -13,11 +13,12 @@ from scipy import ndimage
 
 from splinesdf.contours.contour import Contour, evaluate
 from splinesdf.meshes import Grid, Quadtree
-from splinesdf.spaces import hierarchical_ordinates, tensor_ordinates
+from splinesdf.spaces.tensor import tensor_ordinates
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 from tests.examples import examples
 from tests.naive_tree import refine
+from tests.trees import hierarchical_ordinates
 
 Coefficients = Callable[[np.random.Generator, tuple[int, ...]], np.ndarray]
 

@@ -61,7 +61,7 @@ TWO_63 = 2**63 - 1
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"version": np.array(3)}, "update splinesdf"),
+        ({"version": np.array(4)}, "update splinesdf"),
         ({"version": np.array(1)}, "'name'"),
         ({"version": np.array(2.0)}, "version"),
         ({"format": np.array("other")}, "another .npz"),

@@ -10,12 +10,12 @@ import pytest
 import splinesdf as ss
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.meshes import Grid, Quadtree
-from splinesdf.spaces import hierarchical_ordinates
-from splinesdf.spaces.quadratic_c1 import TRIANGLES, center_ordinates
+from splinesdf.spaces.quadratic import TRIANGLES, center_ordinates
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 from tests.naive_tree import refine
 from tests.named_shapes import UNIT, gamma
+from tests.trees import hierarchical_ordinates
 
 ELL = ss.Shape.from_points([(0.1, 0.1), (0.9, 0.1), (0.9, 0.5), (0.4, 0.5), (0.4, 0.9), (0.1, 0.9)])
 SHAPES = {"gamma1": gamma("gamma1"), "gamma2": gamma("gamma2"), "ell": ELL}

@@ -11,7 +11,6 @@ from splinesdf.cli import report
 from splinesdf.cli.shapes import (
     read_shape,
 )
-from splinesdf.meshes import Quadtree
 
 
 @click.command()
@@ -22,11 +21,10 @@ def info(file: str, fill: str | None, close: bool) -> None:
     """What is in FILE: a saved fit (.npz) or a shape."""
     if Path(file).suffix.lower() == ".npz":
         spline = ss.load(file)
-        mesh = spline.mesh
-        kind = f"quadtree of {mesh.depth + 1} levels" if isinstance(mesh, Quadtree) else "grid"
         report.print_pairs(
             fit=spline.name or file,
-            cells=f"{len(spline.ordinates):,} ({kind})",
+            cells=f"{len(spline.ordinates):,} ({spline.mesh.description})",
+            element=spline.element.name,
             domain=report.box_text(spline.domain),
             y="downward" if spline.y_down else "upward",
             size=_size_of(file),

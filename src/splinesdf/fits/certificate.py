@@ -7,19 +7,17 @@ triangles ─→ what can be closest there (culling) ─→ branch and bound (ke
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf.arclets.tables import Candidates
-from splinesdf.distance.exact import signed_distance
-from splinesdf.distance.tables import Bent
+from splinesdf.fits.pieces import pieces
 from splinesdf.fits.tables import Asked, Brackets, Limits
+from splinesdf.fits.target import Target
 from splinesdf.fits.trials import Known
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.blocks import in_blocks
-from splinesdf.shapes.shape import Shape
-from splinesdf.spaces.quadratic_c1 import TRIANGLES, center_ordinates
 from splinesdf.splines.spline import SplineSDF
 
 # Triangles a thread takes at a time. Fewer: the pool's overhead shows; more: the last block keeps
@@ -49,15 +47,14 @@ _TOGETHER = 64
 _NOISE = 2.5e-13
 # Rounding in distances and ordinates, as a share of the largest coordinate: that of the kernel.
 _GRAIN = 256 * 2.220446049250313e-16
-# What rounding of a point to the shape's own coordinates takes of that: four units in the last
-# place, where half of one is enough each way. Smaller: bounds far from the origin are no bounds.
-_ASKED = 4.0 / 256.0
 # Open triangles at a time: 100 MB. Beyond it they keep the bound that they have.
 _MOST_OPEN = 400_000
+# Cells at a time whose polynomials are cut into quadratics: 100 kB each.
+_MOST_CELLS = 512
 
 
 # The corner (SW SE NW NE) of a cell at which each of its eighths lies.
-_CORNER = np.array([corner for a, _, b in TRIANGLES for corner in (a, b)])
+_CORNER = np.array([0, 1, 1, 3, 3, 2, 2, 0])
 
 
 class Wanted(NamedTuple):
@@ -77,24 +74,25 @@ class Wanted(NamedTuple):
 class _Search(NamedTuple):
     """What does not change while triangles are halved."""
 
-    shape: Shape
+    target: Target
     bands: Floats
     wanted: Wanted
     largest: float
-    anchor: Floats  # (n, 3) of each cell: its middle and its exact distance
+    # (n, 4) of each cell: its middle, its exact distance, what quadratics miss of the spline.
+    anchor: Floats
     low: Floats  # (8 n,) of the eighths of cells: the error is at least this
     high: Floats  # (8 n,) and at most this; improved step by step
     counts: Bools  # (8 n,)
 
 
 def cell_errors(
-    shape: Shape, spline: SplineSDF, cells: Ints, center: Floats, bands: Floats, wanted: Wanted
+    target: Target, spline: SplineSDF, cells: Ints, center: Floats, bands: Floats, wanted: Wanted
 ) -> Known:
     """Bracket the largest error in each of some cells.
 
     Parameters
     ----------
-    shape : Shape
+    target : Target
     spline : SplineSDF
     cells : ndarray, shape (n,)
     center : ndarray, shape (n,)
@@ -103,21 +101,28 @@ def cell_errors(
         Only what may lie in one of them counts; all does if there is none.
     wanted : Wanted
     """
-    origin = shape.boundary.origin
-    boxes = spline.mesh.local_boxes[cells] + np.tile(spline.domain[:2] - origin, 2)
+    if spline.element.degree > 2 and len(cells) > _MOST_CELLS:
+        blocks = np.array_split(np.arange(len(cells)), math.ceil(len(cells) / _MOST_CELLS))
+        found = [
+            cell_errors(target, spline, cells[block], center[block], bands, wanted)
+            for block in blocks
+        ]
+        return Known(*(np.concatenate(values) for values in zip(*found, strict=True)))
+    boxes = spline.mesh.local_boxes[cells] + np.tile(spline.domain[:2] - target.origin, 2)
     count = len(cells)
+    first = pieces(spline.element, boxes, spline.ordinates[cells], wanted.threshold)
+    middles = 0.5 * (boxes[:, :2] + boxes[:, 2:])
     search = _Search(
-        shape=shape,
+        target=target,
         bands=bands,
         wanted=wanted,
-        largest=_largest(shape, boxes),
-        anchor=np.column_stack([0.5 * (boxes[:, :2] + boxes[:, 2:]), center]),
+        largest=target.largest(boxes),
+        anchor=np.column_stack([middles, center, first.missed]),
         low=np.zeros(8 * count),
         high=np.zeros(8 * count),
         counts=np.zeros(8 * count, dtype=np.bool_),
     )
-    halves = np.arange(8 * count).reshape(-1, 2)
-    part, triangles = _enclose(search, boxes, halves, _quarters(boxes, spline.ordinates[cells]))
+    part, triangles = _enclose(search, first.boxes, first.halves, first.triangles)
     rounds = _ROUNDS if wanted.proved else _SAMPLED_ROUNDS
     for number in range(rounds + 1):
         if len(part) == 0:
@@ -135,21 +140,6 @@ def cell_errors(
     return Known(low.max(axis=1), high.max(axis=1), counts, over)
 
 
-def _largest_of(shape: Shape, spline: SplineSDF) -> float:
-    """The largest coordinate of the domain and the boundary, from where distances are computed."""
-    domain = np.array(spline.domain) - np.tile(shape.boundary.origin, 2)
-    return float(max(np.abs(domain).max(), np.abs(shape.boundary.boxes[0]).max()))
-
-
-def _largest(shape: Shape, boxes: Floats) -> float:
-    """The largest coordinate as far as rounding is concerned, which is that of differences.
-
-    Points that are asked for exact distances are rounded in the shape's own coordinates, though.
-    """
-    local = max(np.abs(boxes).max(initial=0.0), np.abs(shape.boundary.boxes[0]).max())
-    return float(local + _ASKED * (local + np.abs(shape.boundary.origin).max()))
-
-
 def _enclose(
     search: _Search, boxes: Floats, halves: Ints, triangles: Floats
 ) -> tuple[Ints, Floats]:
@@ -157,17 +147,9 @@ def _enclose(
 
     ``halves`` (n, 2) says of which eighth each half of a triangle is.
     """
-    from splinesdf.arclets.kernels.culling import (  # Numba loads only when it is used
-        MOST_KEPT,
-        cull_boxes,
-    )
-    from splinesdf.fits.kernels.enclosure import enclose
-
     if len(halves) == 0:
         return halves[:, 0], triangles
-    boundary, bends, wanted = search.shape.boundary, search.shape.bends, search.wanted
-    in_box = len(halves) // len(boxes)
-    bent = Bent(boundary.arcs, boundary.following, bends.rows, bends.second, bends.previous)
+    wanted, in_box = search.wanted, len(halves) // len(boxes)
     limits = Limits(
         bands=search.bands,
         around=wanted.around,
@@ -186,9 +168,6 @@ def _enclose(
 
     def work(block: slice) -> None:
         here = boxes[block.start // in_box : block.stop // in_box]
-        starts = np.empty(len(here) + 1, dtype=np.int64)
-        nodes = np.empty(len(here) * MOST_KEPT, dtype=np.int64)
-        cull_boxes(boundary.tree, boundary.arcs, here, starts, nodes)
         size = block.stop - block.start
         asked = Asked(
             triangles=triangles[block],
@@ -204,7 +183,7 @@ def _enclose(
             open_from=np.empty(size * _OPEN, dtype=np.int64),
             open_triangles=np.empty((size * _OPEN, 12)),
         )
-        enclose(boundary.tree, Candidates(starts, nodes), bent, asked, limits, brackets)
+        search.target.enclose(here, asked, limits, brackets)
         found = int(brackets.open_count[0])
         owner = halves[block].reshape(-1)[brackets.open_from[:found]]
         left[block.start] = owner, brackets.open_triangles[:found].copy()
@@ -232,19 +211,20 @@ def _sample(search: _Search, part: Ints, triangles: Floats, last: bool) -> tuple
     middle = 0.5 * (triangles[:, 0:2] + triangles[:, 2:4])
     arms = triangles[:, [0, 1, 4, 5]].reshape(-1, 2, 2) - middle[:, None]
     reach = np.sqrt(np.sum(arms * arms, axis=2).max(axis=1))
-    exact = signed_distance(search.shape, middle + search.shape.boundary.origin)
+    exact = search.target.values(middle + search.target.origin)
     c = triangles[:, 6:]
     error = np.abs(_middle(c) - exact)
-    grain = _GRAIN * search.largest
+    missed = search.anchor[part // 8, 3]
+    grain = _GRAIN * search.largest + missed
     slope = np.empty(len(part))
     steepest(triangles, slope)
     spread = (1.0 + slope) * reach + grain
     bound = error + spread
     if not wanted.proved and last:
         bound = error
-    seen, meets = error, np.ones(len(part), dtype=np.bool_)
+    seen, meets = error - missed, np.ones(len(part), dtype=np.bool_)
     if len(search.bands):
-        seen, meets = _in_bands(search, exact, c, error, (spread, reach + grain, grain))
+        seen, meets = _in_bands(search, exact, c, seen, (spread, reach + grain, grain))
     np.maximum.at(low, part[meets], seen[meets])
     counts[part[meets]] = True
     known = low[part]
@@ -260,7 +240,7 @@ def _sample(search: _Search, part: Ints, triangles: Floats, last: bool) -> tuple
 
 
 def largest_error(
-    shape: Shape,
+    target: Target,
     spline: SplineSDF,
     center: Floats,
     bands: Floats | None = None,
@@ -272,7 +252,7 @@ def largest_error(
 
     Parameters
     ----------
-    shape : Shape
+    target : Target
     spline : SplineSDF
     center : ndarray, shape (n_cells,)
         Exact signed distances at the centers of the cells.
@@ -285,13 +265,13 @@ def largest_error(
     low, high : float
     """
     bands = np.empty((0, 2)) if bands is None else bands
-    noise = _NOISE * _largest_of(shape, spline)
+    noise = _NOISE * target.largest_in(spline.domain)
     if known is not None and len(bands):  # what was seen may lie around a band
         known = known._replace(low=np.zeros_like(known.low))
     if known is None:
-        error = np.abs(center_ordinates(spline.ordinates)[1] - center)
+        error = np.abs(spline.element.at_centers(spline.ordinates) - center)
         wanted = Wanted((1.0 + TIGHT) * float(error.max()) + noise)
-        known = cell_errors(shape, spline, np.arange(len(center)), center, bands, wanted)
+        known = cell_errors(target, spline, np.arange(len(center)), center, bands, wanted)
     low, high = (np.where(known.counts, values, 0.0) for values in known[:2])
     # Where nothing is known from below, a glance first: most cells need no more then.
     most = _EFFORT_IN_BANDS if len(bands) else _EFFORT
@@ -303,7 +283,7 @@ def largest_error(
         # The most promising first: once its error is known, few others can exceed it.
         cells = cells[np.argsort(-high[cells], kind="stable")][:_TOGETHER]
         wanted = Wanted(enough, effort=effort)
-        found = cell_errors(shape, spline, cells, center[cells], bands, wanted)
+        found = cell_errors(target, spline, cells, center[cells], bands, wanted)
         improved = (found.low > low[cells]) | (found.high < high[cells])
         if effort == most and not improved.any():  # or no cell was left
             return largest, float(high.max(initial=0.0))
@@ -317,7 +297,7 @@ def _in_bands(
     exact: Floats,
     c: Floats,
     error: Floats,
-    margins: tuple[Floats, Floats, float],
+    margins: tuple[Floats, Floats, Floats],
 ) -> tuple[Floats, Bools]:
     """What |s - u| is at least in a point of a band on each triangle, and whether it can meet one.
 
@@ -358,21 +338,3 @@ def _counts(
 def _middle(c: Floats) -> Floats:
     """The spline halfway along the longest side of triangles with coefficients (n, 6)."""
     return 0.25 * (c[:, 0] + 2.0 * c[:, 3] + c[:, 1])
-
-
-def _quarters(boxes: Floats, ordinates: Floats) -> Floats:
-    """The four triangles of cells, whose halves `_CORNER` tells: (4 n, 12)."""
-    beside, center = center_ordinates(ordinates)
-    x, y = boxes[:, [0, 2, 0, 2]], boxes[:, [1, 1, 3, 3]]
-    mx, my = 0.5 * (boxes[:, 0] + boxes[:, 2]), 0.5 * (boxes[:, 1] + boxes[:, 3])
-    quarters = [
-        np.column_stack(
-            [
-                *(x[:, a], y[:, a], x[:, b], y[:, b], mx, my),
-                *(ordinates[:, a], ordinates[:, b], center),
-                *(ordinates[:, side], beside[:, b], beside[:, a]),
-            ]
-        )
-        for a, side, b in TRIANGLES
-    ]
-    return np.stack(quarters, axis=1).reshape(-1, 12)

@@ -7,38 +7,24 @@ start ─→ quasi-interpolate ─→ bracket the error of cells that changed �
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Unpack, cast
 
 import numpy as np
 
-from splinesdf.errors import InputError, ToleranceNotReached
+from splinesdf.errors import ToleranceNotReached
 from splinesdf.fits.certificate import Wanted, cell_errors, largest_error
-from splinesdf.fits.trials import GridTrial, TreeTrial, Trial
-from splinesdf.ground.arrays import Bools, Floats, as_floats, finite, positive, shown, whole
-from splinesdf.meshes import Box, Grid, Mesh, Quadtree
-from splinesdf.meshes.mesh import check_domain
-from splinesdf.meshes.quadtree import DEEPEST
+from splinesdf.fits.request import Band, FitOptions, request_of, with_options
+from splinesdf.fits.target import ShapeTarget
+from splinesdf.fits.trials import Trial
+from splinesdf.ground.arrays import Bools, Floats
+from splinesdf.meshes import Mesh
 from splinesdf.shapes.shape import Shape
-from splinesdf.spaces.quadratic_c1 import center_ordinates
 from splinesdf.splines.provenance import Provenance
-from splinesdf.splines.quasi import check_operator
 from splinesdf.splines.spline import SplineSDF
 
 Stopped = Literal["refining", "reached", "max_cells", "min_side", "given"]
-Band = tuple[float, float]
-
-# Cells along the domain's longer side at the start. More: cells wasted where the distance is
-# smooth; fewer: more rounds for nothing, each a halving.
-_START = 4
-# A million cells are 64 MB of ordinates and minutes of work: beyond it something is wrong.
-_MAX_CELLS = 1_000_000
-# Rounding of the distance, in units of the largest coordinate, with what the proof adds for it: no
-# tolerance below it can be kept.
-_ROUNDING = 1e-13
-# Cells of the finest level along a side: pairs of their numbers must fit into one of 63 bits.
-_LATTICE = 2**30
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,54 +58,77 @@ class FitResult:
     Attributes
     ----------
     spline : SplineSDF
-        With the shape in ``.shape`` and these figures in ``.made``.
-    tolerance : float or None
-        What was asked; None of `interpolate`, which is asked for none.
-    error : float
-        The largest |s - u| over what counts, from below: over the whole domain, or where a
-        band is. With a certificate the true maximum is between it and ``bound``.
-    centre_error : float
-        The paper's error: the largest |s - u| at the centers of cells that count. It is three to
-        six times too small and only here to compare with the paper.
-    bound : float or None
-        A proved upper bound of the error (docs/theory/certificate.md), not more than half a
-        percent above it, but where that cannot be had; None with ``certify=False``.
-    cells : int
-    stopped : {"reached", "max_cells", "min_side", "refining", "given"}
-        Why the loop ended; "refining" in the steps before the last. "given": there was no loop,
-        as `interpolate` takes the mesh that it is given.
+        With the shape in ``.shape``, and what was asked and found in ``.made``.
     history : tuple of FitStep
-    evaluations : int
-        Exact distances asked for the spline; the proof finds closest points of its own.
-    bands : tuple of (float, float)
-        Empty for the whole domain.
+        The rounds so far; the last one is this result's.
     """
 
     spline: SplineSDF
-    tolerance: float | None
-    error: float
-    centre_error: float
-    bound: float | None
-    cells: int
-    stopped: Stopped
     history: tuple[FitStep, ...]
-    evaluations: int
-    bands: tuple[Band, ...] = ()
+
+    @property
+    def _made(self) -> Provenance:
+        assert self.spline.made is not None
+        return self.spline.made
+
+    @property
+    def tolerance(self) -> float | None:
+        """What was asked; None of `interpolate`, which is asked for none."""
+        return self._made.tolerance
+
+    @property
+    def error(self) -> float:
+        """The largest |s - u| over what counts, from below.
+
+        Over the whole domain, or where a band is. With a certificate the true maximum is between
+        it and ``bound``.
+        """
+        return self._made.error
+
+    @property
+    def centre_error(self) -> float:
+        """The paper's error: the largest |s - u| at the centers of cells that count.
+
+        It is three to six times too small and only here to compare with the paper.
+        """
+        return self.history[-1].centre_error
+
+    @property
+    def bound(self) -> float | None:
+        """A proved upper bound of the error (docs/theory/certificate.md).
+
+        Not more than half a percent above it, but where that cannot be had; None with
+        ``certify=False``.
+        """
+        return self._made.bound
+
+    @property
+    def cells(self) -> int:
+        """How many cells the mesh has."""
+        return self.history[-1].cells
+
+    @property
+    def stopped(self) -> Stopped:
+        """Why the loop ended: "reached", "max_cells", "min_side", "refining", "given".
+
+        "refining" in the steps before the last. "given": there was no loop, as `interpolate`
+        takes the mesh that it is given.
+        """
+        return cast(Stopped, self._made.stopped)
+
+    @property
+    def evaluations(self) -> int:
+        """Exact distances asked for the spline; the proof finds closest points of its own."""
+        return self._made.evaluations
+
+    @property
+    def bands(self) -> tuple[Band, ...]:
+        """Where the tolerance is kept; empty for the whole domain."""
+        return self._made.bands
 
 
-def fit(
-    shape: Shape,
-    *,
-    tolerance: float,
-    space: str = "hierarchical",
-    operator: str | None = None,
-    band: Band | Sequence[Band] | None = None,
-    domain: Box | None = None,
-    start: tuple[int, int] | None = None,
-    max_cells: int = _MAX_CELLS,
-    min_side: float = 0.0,
-    certify: bool = True,
-) -> FitResult:
+@with_options
+def fit(shape: Shape, *, tolerance: float, **options: Unpack[FitOptions]) -> FitResult:
     """Approximate the signed distance of a shape to a tolerance.
 
     Parameters
@@ -127,10 +136,16 @@ def fit(
     shape : Shape
     tolerance : float
         Largest |s - u| allowed, in the shape's unit.
+
+    Other Parameters
+    ----------------
     space : {"hierarchical", "tensor", "uniform"}
-    operator : {"S", "W", "V", "P"}, optional
-        The quasi-interpolant, see `splinesdf.splines.quasi`. Unless given S, which needs the
-        fewest cells at ridges of the distance; for bands P, which reproduces quadratics across
+    element : {"quadratic", "cubic"}
+        The B-splines, see `splinesdf.spaces`: C¹, of order 3 both. The cubic ones are for
+        comparison: they have uniform space only, and neither level sets nor values outside.
+    operator : str, optional
+        The quasi-interpolant. Of the quadratic element S, W, V or P: unless given S, which needs
+        the fewest cells at ridges of the distance; for bands P, which reproduces quadratics across
         levels and needs the fewest around smooth levels; W on a tensor grid, which has neither.
     band : pair of float, or several, optional
         Keep the tolerance only where lo <= u <= hi or lo <= s <= hi; elsewhere the spline may
@@ -162,18 +177,7 @@ def fit(
     ----------
     [Wang2014] Algorithm 2, with the true error in place of the error at cell centers.
     """
-    *_, result = fit_steps(
-        shape,
-        tolerance=tolerance,
-        space=space,
-        operator=operator,
-        band=band,
-        domain=domain,
-        start=start,
-        max_cells=max_cells,
-        min_side=min_side,
-        certify=certify,
-    )
+    *_, result = fit_steps(shape, tolerance=tolerance, **options)
     return require_reached(result)
 
 
@@ -194,171 +198,57 @@ def require_reached(result: FitResult) -> FitResult:
     )
 
 
+@with_options
 def fit_steps(
-    shape: Shape,
-    *,
-    tolerance: float,
-    space: str = "hierarchical",
-    operator: str | None = None,
-    band: Band | Sequence[Band] | None = None,
-    domain: Box | None = None,
-    start: tuple[int, int] | None = None,
-    max_cells: int = _MAX_CELLS,
-    min_side: float = 0.0,
-    certify: bool = True,
+    shape: Shape, *, tolerance: float, **options: Unpack[FitOptions]
 ) -> Iterator[FitResult]:
     """The loop of `fit`, one result a round; the last one says why it ended and raises nothing."""
-    bands = _check_bands(band)
-    if operator is None:
-        # The fewest cells, by docs/fit.md: S where there are ridges, P around smooth levels.
-        operator = "W" if space == "tensor" else "P" if len(bands) else "S"
-    check_operator(operator)
-    outward = float(max(bands.max(initial=0.0), 0.0))
-    box = shape.default_domain(outward) if domain is None else check_domain(domain)
-    largest = max(abs(value) for value in (*shape.box, *box))
-    tolerance = positive(tolerance, "tolerance")
-    max_cells = whole(max_cells, "max_cells", least=1, most=2**63 - 1)
-    min_side = finite(min_side, "min_side")
-    if min_side < 0.0:
-        raise InputError(f"expected min_side from 0 on, got {min_side:g}")
-    if tolerance <= _ROUNDING * largest:
-        raise InputError(
-            f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "
-            f"got {tolerance:.4g}"
-        )
-    trial = _first_trial(shape, space, box, _first_cells(box, start, max_cells), operator)
+    target = ShapeTarget(shape)
+    asked = request_of(target, tolerance, options)
+    tolerance, bands, certify = asked.tolerance, asked.bands, asked.certify
+    trial = Trial(target, shape, asked.space, asked.operator)
     wanted = Wanted(threshold=tolerance, enough=tolerance, around=True, proved=certify)
     history: tuple[FitStep, ...] = ()
     while True:
         spline, cells = trial.spline, trial.changed
-        errors = cell_errors(shape, spline, cells, trial.center[cells], bands, wanted)
+        errors = cell_errors(target, spline, cells, trial.center[cells], bands, wanted)
         trial.learn(cells, errors)
         known = trial.known
         bad = known.counts & known.over.any(axis=1)
         count = len(bad)
-        stopped = _verdict(spline.mesh, bad, min_side)
-        if stopped == "refining" and trial.plan(np.flatnonzero(bad)) > max_cells:
+        stopped = _verdict(spline.mesh, bad, asked.min_side)
+        if stopped == "refining" and trial.plan(np.flatnonzero(bad)) > asked.max_cells:
             stopped = "max_cells"
         error, bound = float(known.low[known.counts].max(initial=0.0)), None
         if stopped != "refining":
-            error, bound = largest_error(shape, spline, trial.center, bands, known)
+            error, bound = largest_error(target, spline, trial.center, bands, known)
             # What is left to do around bands may be nothing in them.
             stopped = "reached" if certify and bound <= tolerance else stopped
         center = center_error(spline, trial.center, bands)
         history = (*history, FitStep(spline.mesh, count, error, center, trial.evaluations))
-        yield result_of(
-            spline,
+        made = Provenance(
             tolerance=tolerance,
             error=error,
-            bound=bound if certify else None,
-            history=history,
-            space=space,
-            operator=operator,
-            stopped=stopped,
+            bound=bound if certify and bound is not None and np.isfinite(bound) else None,
             bands=tuple((float(low), float(high)) for low, high in bands),
+            space=asked.space.name,
+            operator=asked.operator,
+            stopped=stopped,
+            evaluations=trial.evaluations,
         )
+        yield FitResult(replace(spline, made=made), history)
         if stopped != "refining":
             return
         trial.refine()
 
 
-def result_of(
-    spline: SplineSDF,
-    *,
-    tolerance: float | None,
-    error: float,
-    bound: float | None,
-    history: tuple[FitStep, ...],
-    space: str,
-    operator: str,
-    stopped: Stopped,
-    bands: tuple[Band, ...] = (),
-) -> FitResult:
-    """The result whose last step is that of the history; its spline knows how it was made."""
-    last = history[-1]
-    made = Provenance(
-        tolerance=tolerance,
-        error=error,
-        bound=bound if bound is not None and np.isfinite(bound) else None,
-        bands=bands,
-        space=space,
-        operator=operator,
-        stopped=stopped,
-        evaluations=last.evaluations,
-    )
-    return FitResult(
-        spline=replace(spline, made=made),
-        tolerance=tolerance,
-        error=error,
-        centre_error=last.centre_error,
-        bound=made.bound,
-        cells=last.cells,
-        stopped=stopped,
-        history=history,
-        evaluations=last.evaluations,
-        bands=bands,
-    )
-
-
 def center_error(spline: SplineSDF, exact: Floats, bands: Floats) -> float:
     """The largest |s - u| at the centers of cells, those in a band if there are any."""
-    middle = center_ordinates(spline.ordinates)[1]
+    middle = spline.element.at_centers(spline.ordinates)
     counts = np.full(len(middle), len(bands) == 0)
     for low, high in bands:
         counts |= (middle >= low) & (middle <= high) | (exact >= low) & (exact <= high)
     return float(np.abs(middle - exact)[counts].max(initial=0.0))
-
-
-def _check_bands(bands: Band | Sequence[Band] | None) -> Floats:
-    """One band or several as an array (k, 2)."""
-    if bands is None:
-        return np.empty((0, 2))
-    array = as_floats(bands, "a band (lo, hi) or several")
-    array = array.reshape(1, 2) if array.shape == (2,) else array
-    if array.ndim != 2 or array.shape[1] != 2 or len(array) == 0:
-        raise InputError(f"expected a band (lo, hi) or several, got {shown(bands)}")
-    if not (np.isfinite(array).all() and np.all(array[:, 0] <= array[:, 1])):
-        raise InputError(f"expected a band with finite lo <= hi, got {shown(bands)}")
-    return array
-
-
-def _first_trial(
-    shape: Shape, space: str, box: Box, start: tuple[int, int], operator: str
-) -> Trial:
-    if space == "hierarchical":
-        return TreeTrial(shape, box, start, operator)
-    if space in ("tensor", "uniform"):
-        return GridTrial(shape, Grid.uniform(box, *start), operator, space == "uniform")
-    raise InputError(f"expected space 'hierarchical', 'tensor' or 'uniform', got {space!r}")
-
-
-def _first_cells(box: Box, start: tuple[int, int] | None, max_cells: int) -> tuple[int, int]:
-    """Cells each way to start from, never more than ``max_cells``."""
-    if start is None:
-        width, height = box[2] - box[0], box[3] - box[1]
-        for count in range(_START, 0, -1):
-            side = max(width, height) / count
-            m, n = max(1, round(width / side)), max(1, round(height / side))
-            if m * n <= max_cells:
-                break
-    else:
-        m, n = _check_start(start)
-    if m * n > max_cells:
-        raise InputError(
-            f"expected max_cells of at least the cells to start from, got {max_cells} for {m} x {n}"
-        )
-    return m, n
-
-
-def _check_start(start: tuple[int, int]) -> tuple[int, int]:
-    try:
-        m, n = start
-    except (TypeError, ValueError) as error:
-        raise InputError(f"expected start as two whole numbers, got {shown(start)}") from error
-    m, n = (whole(count, "start", least=1, most=_MAX_CELLS) for count in (m, n))
-    if m * n > _MAX_CELLS:
-        raise InputError(f"expected a start of 1 to {_MAX_CELLS:,} cells, got {m} x {n}")
-    return m, n
 
 
 def _verdict(mesh: Mesh, bad: Bools, min_side: float) -> Stopped:
@@ -366,7 +256,5 @@ def _verdict(mesh: Mesh, bad: Bools, min_side: float) -> Stopped:
         return "reached"
     boxes = mesh.boxes[bad]
     smallest = float(np.min(boxes[:, 2:] - boxes[:, :2]))
-    too_deep = isinstance(mesh, Quadtree) and (
-        mesh.depth >= DEEPEST or max(mesh.shape) << mesh.depth >= _LATTICE
-    )
-    return "min_side" if smallest < 2.0 * min_side or too_deep else "refining"
+    too_small = smallest < 2.0 * min_side or not mesh.can_halve
+    return "min_side" if too_small else "refining"

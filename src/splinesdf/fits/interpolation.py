@@ -8,6 +8,7 @@ One round of `fit`, without a tolerance: what the source paper does on m x n cel
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from operator import index as as_whole
 
 import numpy as np
@@ -15,13 +16,16 @@ from numpy.typing import ArrayLike
 
 from splinesdf.errors import InputError
 from splinesdf.fits.certificate import largest_error
-from splinesdf.fits.fit import FitResult, FitStep, center_error, result_of
-from splinesdf.fits.trials import GridTrial
+from splinesdf.fits.fit import FitResult, FitStep, center_error
+from splinesdf.fits.target import ShapeTarget
+from splinesdf.fits.trials import Trial
 from splinesdf.ground.arrays import Floats
 from splinesdf.meshes import Box, Grid
 from splinesdf.meshes.mesh import check_domain
 from splinesdf.shapes.shape import Shape
-from splinesdf.splines.quasi import check_operator
+from splinesdf.spaces.elements import find_element
+from splinesdf.spaces.space import space_on
+from splinesdf.splines.provenance import Provenance
 
 # A million cells are 64 MB of ordinates: beyond it the counts are a slip. As in `fit`.
 _MAX_CELLS = 1_000_000
@@ -37,8 +41,9 @@ def interpolate(
     shape: Shape,
     mesh: CellCounts | Knots | Sequence[ArrayLike],
     *,
-    operator: str = "W",
+    operator: str | None = None,
     domain: Box | None = None,
+    element: str = "quadratic",
 ) -> FitResult:
     """Approximate the signed distance of a shape on a given mesh, with no tolerance to keep.
 
@@ -48,11 +53,14 @@ def interpolate(
     mesh : (m, n) or (x, y)
         Columns and rows of equal cells; or the knots of a tensor grid, two increasing arrays of
         shapes (m + 1,) and (n + 1,).
-    operator : {"W", "V", "S", "P"}
-        The quasi-interpolant, see `splinesdf.splines.quasi`. S and P need equal cells. None of
-        them has the distance's values at points, as an interpolant in the strict sense would.
+    operator : str, optional
+        The quasi-interpolant. Of the quadratic element W (unless given), V, S or P, of the cubic
+        one S or V. S and P need equal cells. None of them has the distance's values at points, as
+        an interpolant in the strict sense would.
     domain : (xmin, ymin, xmax, ymax), optional
         For (m, n); knots are a domain. As in `fit` unless given.
+    element : {"quadratic", "cubic"}
+        As in `fit`.
 
     Returns
     -------
@@ -75,30 +83,31 @@ def interpolate(
         raise InputError(
             f"expected a Shape, got {type(shape).__name__}: read one by splinesdf.read"
         )
-    check_operator(operator)
-    grid, space = _grid(shape, mesh, domain)
-    trial = GridTrial(shape, grid, operator, space == "uniform")
-    spline, count = trial.spline, len(grid.boxes)
-    low, high = largest_error(shape, spline, trial.center)
+    kind, grid = find_element(element), _grid(shape, mesh, domain)
+    operator = kind.defaults["given"] if operator is None else operator
+    kind.operator(operator)
+    target, space = ShapeTarget(shape), space_on(grid, kind)
+    trial = Trial(target, shape, space, operator)
+    spline = trial.spline
+    low, high = largest_error(target, spline, trial.center)
     # The bracket is half a percent wide, and a center may be where the error is largest.
     center = center_error(spline, trial.center, np.empty((0, 2)))
-    error, bound = max(low, center), max(high, center)
-    return result_of(
-        spline,
+    step = FitStep(grid, grid.cell_count, max(low, center), center, trial.evaluations)
+    made = Provenance(
         tolerance=None,
-        error=error,
-        bound=bound,
-        history=(FitStep(grid, count, error, center, trial.evaluations),),
-        space=space,
+        error=step.error,
+        bound=max(high, center),
+        bands=(),
+        space="uniform" if np.ndim(mesh[0]) == 0 else "tensor",
         operator=operator,
         stopped="given",
+        evaluations=trial.evaluations,
     )
+    return FitResult(replace(spline, made=made), (step,))
 
 
-def _grid(
-    shape: Shape, mesh: CellCounts | Knots | Sequence[ArrayLike], domain: Box | None
-) -> tuple[Grid, str]:
-    """The grid that is meant, and the name of its space."""
+def _grid(shape: Shape, mesh: CellCounts | Knots | Sequence[ArrayLike], domain: Box | None) -> Grid:
+    """The grid that is meant."""
     try:
         first, second = mesh
         kinds = np.ndim(first), np.ndim(second)
@@ -107,12 +116,12 @@ def _grid(
     if kinds == (0, 0):
         m, n = _counts(first, second)
         box = shape.default_domain(0.0) if domain is None else check_domain(domain)
-        grid, space = Grid.uniform(box, m, n), "uniform"
+        grid = Grid.uniform(box, m, n)
     elif kinds == (1, 1):
         if domain is not None:
             raise InputError("expected no domain beside knots, which are one: leave it out")
         x, y = _numbers("x", first), _numbers("y", second)
-        grid, space = Grid(x, y), "tensor"
+        grid = Grid(x, y)
     else:
         got = " ".join(repr(mesh).split())
         raise InputError(
@@ -122,7 +131,7 @@ def _grid(
         _check_lines(name, lines)
     check_domain(grid.domain)
     _check_count(*grid.shape)
-    return grid, space
+    return grid
 
 
 def _counts(first: object, second: object) -> CellCounts:

@@ -12,7 +12,8 @@ class Asked(NamedTuple):
 
     triangles: Floats  # (n, 12) corners A B C, coefficients AA BB CC AB BC CA
     group: Ints  # (n,) which of the lists of candidates is for it
-    anchor: Floats  # (n, 3) a point and its exact signed distance
+    # (n, 4) a point, its exact signed distance, and what the coefficients miss of the spline.
+    anchor: Floats
     low: Floats  # (n, 2) what is known of the largest error on its halves: at least this
 
 

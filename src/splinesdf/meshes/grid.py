@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, shown
@@ -52,10 +53,24 @@ class Grid:
                 raise InputError(f"expected increasing grid lines {name}, got {shown(values)}")
         return cls(*lines)
 
+    kind: ClassVar = "grid"
+    description: ClassVar = "grid"
+    can_halve: ClassVar = True
+
+    @property
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """What determines it, as a file holds it."""
+        return {"x": self.x, "y": self.y}
+
     @property
     def shape(self) -> tuple[int, int]:
         """Cells each way."""
         return len(self.x) - 1, len(self.y) - 1
+
+    @property
+    def cell_count(self) -> int:
+        """How many cells it has."""
+        return (len(self.x) - 1) * (len(self.y) - 1)
 
     @property
     def domain(self) -> Box:

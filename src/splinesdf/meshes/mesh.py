@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_floats, shown, whole
@@ -19,6 +22,26 @@ Box = tuple[float, float, float, float]
 
 class Mesh(Protocol):
     """Rectangular cells that tile a domain."""
+
+    @property
+    def kind(self) -> str:
+        """The name of its type in files: "grid", "quadtree"."""
+
+    @property
+    def description(self) -> str:
+        """A few words for a person."""
+
+    @property
+    def cell_count(self) -> int:
+        """How many cells it has."""
+
+    @property
+    def can_halve(self) -> bool:
+        """Whether its cells may be halved once more."""
+
+    @property
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """What determines it, as a file holds it."""
 
     @property
     def domain(self) -> Box:
@@ -43,6 +66,15 @@ class Mesh(Protocol):
         On the lattice a hanging vertex is the middle of the side that it hangs on, or of a half
         of it, and so on.
         """
+
+
+def frames(boxes: Floats) -> Floats:
+    """Centers and inverse sides of cells: (n, 4) -> (n, 4)."""
+    return np.ascontiguousarray(
+        np.concatenate(
+            [0.5 * (boxes[:, :2] + boxes[:, 2:]), 1.0 / (boxes[:, 2:] - boxes[:, :2])], axis=1
+        )
+    )
 
 
 def check_domain(domain: Box) -> Box:

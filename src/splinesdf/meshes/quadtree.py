@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints
@@ -14,6 +16,8 @@ from splinesdf.meshes.mesh import Box, check_counts, check_domain
 # Lattice coordinates of the finest level, times a few roots, must stay far inside 63 bits when two
 # of them are packed into one key.
 DEEPEST = 26
+# Cells of the finest level along a side: pairs of their numbers must fit into one of 63 bits.
+_LATTICE = 2**30
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +97,29 @@ class Quadtree:
                 f"{m} x {n} cells of {tree.domain}"
             )
         return result
+
+    kind: ClassVar = "quadtree"
+
+    @property
+    def description(self) -> str:
+        """A few words for a person."""
+        return f"quadtree of {self.depth + 1} levels"
+
+    @property
+    def cell_count(self) -> int:
+        """How many cells it has."""
+        return len(self.leaves)
+
+    @property
+    def can_halve(self) -> bool:
+        """Whether its finest cells may be halved once more."""
+        return self.depth < DEEPEST and max(self.shape) << self.depth < _LATTICE
+
+    @property
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """What determines it, as a file holds it: which nodes are split."""
+        domain = np.array(self.domain, dtype=np.float64)
+        return {"domain": domain, "shape": np.array(self.shape), "split": self.child >= 0}
 
     @cached_property
     def leaves(self) -> Ints:

@@ -28,11 +28,11 @@ from numpy.typing import ArrayLike
 from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.fits.certificate import largest_error
+from splinesdf.fits.target import ShapeTarget
 from splinesdf.ground.arrays import Floats, as_points
 from splinesdf.meshes import Box, Grid
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.formula import ParametricCurve, parse_curve
-from splinesdf.spaces.quadratic_c1 import center_ordinates
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 
@@ -212,7 +212,7 @@ def rounds(name: str, mesh: MeshName, operator: str) -> Iterator[Round]:
     while True:
         spline = quasi_interpolate(distance, grid, operator)
         center = distance(0.5 * (grid.boxes[:, :2] + grid.boxes[:, 2:]))
-        errors = np.abs(center_ordinates(spline.ordinates)[1] - center)
+        errors = np.abs(spline.element.at_centers(spline.ordinates) - center)
         yield Round(spline, grid, center, errors)
         k += 1
         if mesh == "uniform":
@@ -249,7 +249,7 @@ def tables() -> Iterator[Row]:
                     n=grid.shape[1],
                     error=float(errors.max()),
                     printed=printed.get((table, operator, k)),
-                    true_error=largest_error(shape(name), spline, center)[0],
+                    true_error=largest_error(ShapeTarget(shape(name)), spline, center)[0],
                 )
 
 

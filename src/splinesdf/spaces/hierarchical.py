@@ -19,16 +19,20 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.meshes.mesh import Box
 from splinesdf.meshes.quadtree import Quadtree
-from splinesdf.spaces.tables import Nodes
+from splinesdf.spaces.element import Element
+from splinesdf.spaces.tables import Evaluated, Mask, Nodes, Ways
 
-# (level, cells (n, 2)) -> the functional of that level for these cells, (n,)
-Functional = Callable[[int, Ints], Floats]
+# A quadtree's points enter it at the finest level that has at most so many places a cell. More:
+# memory, 8 bytes a place beside the 64 of a cell; fewer: points go down more levels one by one.
+_PLACES = 2.0
 
 _QUARTERS = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
 # The 2 x 2 cells around each corner SW SE NW NE of a cell, as changes of (level, i, j).
@@ -37,28 +41,119 @@ _BESIDE = np.array(
 )
 
 
-def hierarchical_ordinates(mesh: Quadtree, functional: Functional) -> Floats:
-    """Ordinates of the hierarchical quasi-interpolant.
+@dataclass(frozen=True, eq=False)
+class HierarchicalSpace:
+    """B-splines of an element on all levels of a quadtree; see `splinesdf.spaces.space.Space`.
 
-    Parameters
+    Attributes
     ----------
     mesh : Quadtree
-    functional : callable
-        ``functional(level, cells)`` with cells of shape (n, 2), one ring beyond the domain
-        included, answers the coefficients (n,) of the uniform quasi-interpolant of that level.
-
-    Returns
-    -------
-    ndarray, shape (n_cells, 8)
+    element : Element
+    grown : Nodes, optional
+        The mesh's tree with its ring, if it is known: otherwise it is made from the mesh.
     """
-    split = mesh.child >= 0
-    nodes = _split(roots(mesh.shape), np.column_stack([mesh.level, mesh.index])[split])
-    own = owned(nodes)
-    values = np.zeros(len(nodes.level))
-    for level in range(int(nodes.level.max()) + 1):
-        chosen = np.flatnonzero(own & (nodes.level == level))
-        values[chosen] = functional(level, nodes.place[chosen])
-    return ordinates(nodes, own, values, leaves(nodes))
+
+    mesh: Quadtree
+    element: Element
+    grown: Nodes | None = None
+
+    @classmethod
+    def of_nodes(cls, nodes: Nodes, domain: Box, element: Element) -> HierarchicalSpace:
+        """The space on a tree that has grown."""
+        return cls(quadtree(nodes, domain), element, nodes)
+
+    @property
+    def name(self) -> str:
+        """Of the kind of space."""
+        return "hierarchical"
+
+    @property
+    def equal_cells(self) -> bool:
+        """True: those of a level are."""
+        return True
+
+    @property
+    def persistent(self) -> bool:
+        """True: nodes keep their numbers."""
+        return True
+
+    @cached_property
+    def nodes(self) -> Nodes:
+        """The tree with its ring; B-splines are numbered like its nodes."""
+        if self.grown is not None:
+            return self.grown
+        mesh = self.mesh
+        split = mesh.child >= 0
+        return _split(roots(mesh.shape), np.column_stack([mesh.level, mesh.index])[split])
+
+    @property
+    def places(self) -> Ints:
+        """The cell (i, j) of its level that each B-spline belongs to."""
+        return self.nodes.place
+
+    @cached_property
+    def own(self) -> Bools:
+        """Which B-splines have a coefficient of their own, not by subdivision."""
+        return owned(self.nodes)
+
+    @cached_property
+    def cells(self) -> Ints:
+        """The B-spline of each cell."""
+        return leaves(self.nodes)
+
+    @cached_property
+    def _roots(self) -> Floats:
+        (xmin, ymin, xmax, ymax), (m, n) = self.mesh.domain, self.mesh.shape
+        return np.array([(xmax - xmin) / m, (ymax - ymin) / n])
+
+    def points(self, bsplines: Ints, offsets: Floats) -> Floats:
+        """Places from the centers of B-splines, offsets (k, 2) in cells, as points (k, 2)."""
+        nodes = self.nodes
+        side = self._roots * np.exp2(-nodes.level[bsplines].astype(np.float64))[:, None]
+        place = nodes.place[bsplines] + (0.5 + offsets)
+        return np.asarray(np.array(self.mesh.domain[:2]) + place * side)
+
+    def numbers(self, coefficients: Floats) -> Floats:
+        """The numbers of all cells from the own coefficients of nodes."""
+        from splinesdf.spaces.kernels.hierarchical import blocks
+        from splinesdf.spaces.kernels.hierarchical import coefficients as fill
+
+        nodes, cells = self.nodes, self.cells
+        mask = Mask(
+            self.element.mask[..., :2].astype(np.int64),
+            np.ascontiguousarray(self.element.mask[..., 2]),
+        )
+        every = np.empty(len(coefficients))
+        fill(nodes, mask, _coarse_first(nodes), self.own, coefficients, every)
+        around = np.empty((len(cells), 9))
+        blocks(nodes, mask, cells, every, around)
+        return self.element.cell_numbers(around)
+
+    def refined(self, bad: Ints, quarters: Bools) -> HierarchicalSpace:
+        """The 2 x 2 cells around the corner at each bad quarter of bad cells halved."""
+        nodes = refined(self.nodes, self.cells[bad], quarters)
+        return HierarchicalSpace.of_nodes(nodes, self.mesh.domain, self.element)
+
+    def evaluator(self, table: Floats) -> Callable[[Evaluated], int]:
+        """A function that fills values and derivatives from the element's table of all cells."""
+        from splinesdf.spaces.kernels.evaluation import evaluate_tree  # Numba loads only when used
+
+        return partial(evaluate_tree, np.array(self.mesh.domain), self._ways, table)
+
+    @cached_property
+    def _ways(self) -> Ways:
+        """How points get to the cells."""
+        from splinesdf.spaces.kernels.location import fill_ways
+
+        mesh, levels = self.mesh, 0
+        m, n = mesh.shape
+        count = len(mesh.leaves)
+        while levels < mesh.depth and m * n * 4 ** (levels + 1) <= _PLACES * count:
+            levels += 1
+        entry = np.empty((m << levels, n << levels), dtype=np.int64)
+        ways = Ways(entry, np.empty(len(mesh.child), dtype=np.int64))
+        fill_ways(np.array(mesh.shape), mesh.child, mesh.cell_of, levels, ways)
+        return ways
 
 
 def roots(shape: tuple[int, int]) -> Nodes:
@@ -144,17 +239,6 @@ def owned(nodes: Nodes) -> Bools:
 def leaves(nodes: Nodes) -> Ints:
     """The nodes that are cells, in the order of `quadtree`."""
     return _mesh_order(nodes)[1]
-
-
-def ordinates(nodes: Nodes, own: Bools, values: Floats, cells: Ints) -> Floats:
-    """Ordinates (k, 8) of cells from the own coefficients of nodes."""
-    from splinesdf.spaces.kernels.hierarchical import coefficients, ordinates
-
-    every = np.empty(len(values))
-    coefficients(nodes, _coarse_first(nodes), own, values, every)
-    result = np.empty((len(cells), 8))
-    ordinates(nodes, cells, every, result)
-    return result
 
 
 def quadtree(nodes: Nodes, domain: Box) -> Quadtree:

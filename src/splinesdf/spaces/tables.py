@@ -17,6 +17,20 @@ class Nodes(NamedTuple):
     near: Ints  # (n, 9) the 3 x 3 nodes around, negative where there is none
 
 
+class Mask(NamedTuple):
+    """Subdivision of coefficients, for each parity 2 (i % 2) + j % 2 of a child (i, j)."""
+
+    steps: Ints  # (4, k, 2) from the parent to coarser B-splines
+    weights: Floats  # (4, k) theirs
+
+
+class Ways(NamedTuple):
+    """How points get to the cells of a quadtree, see `splinesdf.spaces.kernels.location`."""
+
+    entry: Ints  # (m, n) the node, or ~(32 cell + levels up) of a leaf
+    walk: Ints  # (n_nodes,) the first child of a node, or ~cell of a leaf
+
+
 class Evaluated(NamedTuple):
     """Points, and what is filled in there of a spline."""
 
@@ -31,4 +45,4 @@ class Block(NamedTuple):
 
     cells: Ints  # (n,)
     local: Floats  # (4, n) s, t, and the inverse sides of the cell
-    rows: Floats  # (n, 8) the coefficients
+    rows: Floats  # (n, 8) the coefficients, or none

@@ -1,15 +1,120 @@
-"""The space S₂¹ on a grid: one coefficient a cell and a ring of cells around the domain.
+"""Spaces on a grid: one coefficient a cell and a ring of cells around the domain.
 
-The B-spline of a cell is the Zwart-Powell element, the box spline M₁₁₁₁, on unequal cells.
+On unequal cells there is the quadratic element only; see [Wang2014].
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+
 import numpy as np
 
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, whole
+from splinesdf.ground.arrays import Bools, Floats, Ints, whole
 from splinesdf.meshes.grid import Grid
+from splinesdf.spaces.element import Element
+from splinesdf.spaces.tables import Evaluated
+
+
+@dataclass(frozen=True, eq=False)
+class TensorSpace:
+    """B-splines of an element on a grid; see `splinesdf.spaces.space.Space`.
+
+    Attributes
+    ----------
+    mesh : Grid
+    element : Element
+    whole : bool
+        Whether a refinement halves all cells, as the uniform space does, or rows and columns.
+    """
+
+    mesh: Grid
+    element: Element
+    whole: bool = False
+
+    @classmethod
+    def on(cls, mesh: Grid, element: Element) -> TensorSpace:
+        """The space on a grid, a uniform one if its cells are equal."""
+        return cls(mesh, element, whole=mesh.is_uniform)
+
+    @property
+    def name(self) -> str:
+        """Of the kind of space."""
+        return "uniform" if self.whole else "tensor"
+
+    @property
+    def equal_cells(self) -> bool:
+        """Whether all cells are equal."""
+        return self.mesh.is_uniform
+
+    @property
+    def persistent(self) -> bool:
+        """False: a refinement changes all cells."""
+        return False
+
+    @cached_property
+    def places(self) -> Ints:
+        """The cell (i, j) of each B-spline, the ring's from -1 on."""
+        m, n = self.mesh.shape
+        index = np.meshgrid(np.arange(-1, m + 1), np.arange(-1, n + 1), indexing="ij")
+        return np.stack(index, axis=-1).reshape(-1, 2)
+
+    @cached_property
+    def own(self) -> Bools:
+        """All B-splines have a coefficient of their own."""
+        return np.ones(len(self.places), dtype=np.bool_)
+
+    @cached_property
+    def cells(self) -> Ints:
+        """The B-spline of each cell."""
+        m, n = self.mesh.shape
+        return np.arange((m + 2) * (n + 2)).reshape(m + 2, n + 2)[1:-1, 1:-1].reshape(-1)
+
+    @cached_property
+    def _centers_and_sides(self) -> tuple[Floats, Floats]:
+        lines = self.mesh.x, self.mesh.y
+        sides = [ghosted_sides(v) for v in lines]
+        lows = [np.concatenate([v[:1] - h[:1], v]) for v, h in zip(lines, sides, strict=True)]
+        middles = [low + 0.5 * h for low, h in zip(lows, sides, strict=True)]
+        centers = np.stack(np.meshgrid(*middles, indexing="ij"), axis=-1).reshape(-1, 2)
+        return centers, np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 2)
+
+    def points(self, bsplines: Ints, offsets: Floats) -> Floats:
+        """Places from the centers of B-splines, offsets (k, 2) in cells, as points (k, 2)."""
+        centers, sides = self._centers_and_sides
+        return np.asarray(centers[bsplines] + offsets * sides[bsplines])
+
+    def numbers(self, coefficients: Floats) -> Floats:
+        """The numbers of all cells from all coefficients."""
+        m, n = self.mesh.shape
+        table = coefficients.reshape(m + 2, n + 2)
+        if "tensor" in self.element.spaces:
+            return tensor_ordinates(self.mesh, table)
+        blocks = np.lib.stride_tricks.sliding_window_view(table, (3, 3)).reshape(-1, 9)
+        return self.element.cell_numbers(blocks)
+
+    def refined(self, bad: Ints, quarters: Bools) -> TensorSpace:
+        """All cells halved, or the rows and columns of bad ones."""
+        if self.whole:
+            return TensorSpace(self.mesh.halve(), self.element, self.whole)
+        marked = np.zeros(len(self.cells), dtype=np.bool_)
+        marked[bad] = True
+        marked = marked.reshape(self.mesh.shape)
+        mesh = self.mesh.insert(np.any(marked, axis=1), np.any(marked, axis=0))
+        return TensorSpace(mesh, self.element, self.whole)
+
+    def evaluator(self, table: Floats) -> Callable[[Evaluated], int]:
+        """A function that fills values and derivatives from the element's table of all cells."""
+        x, y = self.mesh.x, self.mesh.y
+        if self.element.power_form is None:
+            from splinesdf.spaces.kernels.polynomials import evaluate_polynomials
+
+            return partial(evaluate_polynomials, x, y, table, self.element.degree)
+        from splinesdf.spaces.kernels.evaluation import evaluate_grid  # Numba loads only when used
+
+        return partial(evaluate_grid, x, y, table)
 
 
 def ghosted_sides(lines: Floats) -> Floats:
@@ -19,7 +124,7 @@ def ghosted_sides(lines: Floats) -> Floats:
 
 
 def tensor_ordinates(mesh: Grid, coefficients: Floats) -> Floats:
-    """Ordinates of the spline with these coefficients.
+    """The quadratic element's numbers from coefficients, on unequal cells too.
 
     Parameters
     ----------

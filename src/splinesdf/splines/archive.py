@@ -1,16 +1,17 @@
 """A spline as one ``.npz`` file: what it needs and nothing that could contradict itself.
 
-    format, version    "splinesdf" and 2
+    format, version    "splinesdf" and 3
     domain, shape,     of a quadtree, as in `Quadtree`, and one flag a node, level after level: is
     split              it split?
     x, y               of a grid: its lines
-    ordinates          eight numbers a cell
+    ordinates          the numbers of each cell, eight of the quadratic element
     control, starts,   of the shape, if the fit has one, as in `Shape`
     loops
     about              JSON as UTF-8: name and y_down, which the shape shares with the fit, its
-                       fill rule and notes, and the provenance
+                       fill rule and notes, the provenance, and the element's name
 
-Version 1 had name and y_down as arrays of their own, and neither a shape nor a provenance.
+Version 2 knew only the quadratic element. Version 1 had name and y_down as arrays of their own, and
+neither a shape nor a provenance.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,12 +33,15 @@ from splinesdf.ground.paths import as_path, shortened
 from splinesdf.meshes import Grid, Mesh, Quadtree
 from splinesdf.meshes.mesh import SQUARABLE, check_domain
 from splinesdf.shapes.shape import Shape
+from splinesdf.spaces.element import Element
+from splinesdf.spaces.elements import find_element
+from splinesdf.spaces.quadratic import QUADRATIC
+from splinesdf.spaces.space import space_on
 from splinesdf.splines.provenance import Provenance
 
 # Raised when an older reader would misunderstand a file.
-_VERSION = 2
+_VERSION = 3
 _COMMON = {"format", "version", "ordinates", "about"}
-_MESHES = {"quadtree": {"domain", "shape", "split"}, "grid": {"x", "y"}}
 _SHAPE = {"control", "starts", "loops"}
 _PROVENANCE = {field.name for field in dataclasses.fields(Provenance)}
 # Grid lines nearer than this: the square of a cell's inverse side would overflow.
@@ -53,6 +57,7 @@ class Archive(NamedTuple):
     y_down: bool
     shape: Shape | None
     made: Provenance | None
+    element: Element
 
 
 def write_archive(path: str | os.PathLike[str], archive: Archive) -> None:
@@ -91,13 +96,8 @@ def read_archive(path: str | os.PathLike[str]) -> Archive:
 def _fields(archive: Archive) -> Fields:
     mesh, shape, made = archive.mesh, archive.shape, archive.made
     fields: Fields = {"format": np.array("splinesdf"), "version": np.array(_VERSION)}
-    if isinstance(mesh, Quadtree):
-        domain = np.array(mesh.domain, dtype=np.float64)
-        fields |= {"domain": domain, "shape": np.array(mesh.shape), "split": mesh.child >= 0}
-    elif isinstance(mesh, Grid):
-        fields |= {"x": mesh.x, "y": mesh.y}
-    else:
-        raise InputError(f"expected a Grid or a Quadtree to save, got {type(mesh).__name__}")
+    space_on(mesh, archive.element)  # refuses what is no mesh
+    fields |= mesh.arrays
     if shape is not None:
         fields |= {"control": shape.control, "starts": shape.starts, "loops": shape.loops}
     about = {
@@ -105,6 +105,7 @@ def _fields(archive: Archive) -> Fields:
         "y_down": bool(archive.y_down),
         "shape": None if shape is None else {"fill": shape.fill, "notes": list(shape.notes)},
         "made": None if made is None else dataclasses.asdict(made),
+        "element": archive.element.name,
     }
     text = json.dumps(about)  # ASCII, and every float in as many digits as bring it back
     fields["about"] = np.frombuffer(text.encode(), dtype=np.uint8)
@@ -118,24 +119,28 @@ def _checked(fields: Fields) -> Archive:
     version = int(_field(fields, "version", "iu", ()))
     if version == 1:
         fields = _from_version_1(fields)
-    elif version != _VERSION:
+    elif not 2 <= version <= _VERSION:
         raise InputError(
             f"expected a version of the format up to {_VERSION}, got {version}: update splinesdf"
         )
     names = set(fields) - _COMMON - _SHAPE
-    kind = next((kind for kind, wanted in _MESHES.items() if names == wanted), None)
+    kind = next((kind for kind, (wanted, _) in _MESHES.items() if names == wanted), None)
     if kind is None or not set(fields) >= _COMMON:
         raise InputError(f"expected the fields of a grid or a quadtree, got {_listed(fields)}")
-    mesh = _quadtree(fields) if kind == "quadtree" else _grid(fields)
-    cells = mesh.shape[0] * mesh.shape[1] if isinstance(mesh, Grid) else len(mesh.leaves)
-    ordinates = _floats(fields, "ordinates", (cells, 8))
-    about = _members(_json(fields), {"name", "y_down", "shape", "made"}, "about")
+    mesh = _MESHES[kind][1](fields)
+    said = _json(fields)
+    if version < _VERSION and isinstance(said, dict) and "element" not in said:
+        said = said | {"element": QUADRATIC.name}
+    about = _members(said, {"name", "y_down", "shape", "made", "element"}, "about")
+    element = find_element(about["element"])
+    space_on(mesh, element)  # refuses what has no such B-splines
+    ordinates = _floats(fields, "ordinates", (mesh.cell_count, element.numbers))
     name, y_down = _typed(about["name"], str, "name"), _typed(about["y_down"], bool, "y_down")
     shape = _shape(fields, about["shape"], name, y_down)
     made = None if about["made"] is None else _provenance(about["made"])
     if made is not None and (made.space == "hierarchical") != (kind == "quadtree"):
         raise InputError(f"expected a mesh of the {made.space} space, got a {kind}")
-    return Archive(mesh, ordinates, name, y_down, shape, made)
+    return Archive(mesh, ordinates, name, y_down, shape, made, element)
 
 
 def _from_version_1(fields: Fields) -> Fields:
@@ -167,6 +172,13 @@ def _grid(fields: Fields) -> Grid:
     mesh = Grid.from_lines(x, y)
     check_domain(mesh.domain)
     return mesh
+
+
+# The fields of each kind of mesh, and what makes one of them.
+_MESHES: dict[str, tuple[set[str], Callable[[Fields], Mesh]]] = {
+    "quadtree": ({"domain", "shape", "split"}, _quadtree),
+    "grid": ({"x", "y"}, _grid),
+}
 
 
 def _shape(fields: Fields, about: object, name: str, y_down: bool) -> Shape | None:

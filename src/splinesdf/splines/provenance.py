@@ -7,9 +7,11 @@ from numbers import Integral
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import finite, shown
+from splinesdf.spaces.elements import ELEMENTS
+from splinesdf.spaces.space import SPACES
 
-SPACES = ("hierarchical", "tensor", "uniform")
-OPERATORS = ("V", "W", "S", "P")
+# Of all elements: that of the spline is checked where it is made.
+_OPERATORS = tuple(dict.fromkeys(name for one in ELEMENTS.values() for name in one.operators))
 
 
 def _this_version() -> str:
@@ -38,8 +40,8 @@ class Provenance:
         Distances lo to hi, in the shape's unit, where the tolerance was to be kept. Empty: the
         whole domain.
     space : {"hierarchical", "tensor", "uniform"}
-    operator : {"V", "W", "S", "P"}
-        The quasi-interpolant, see `splinesdf.splines.quasi`.
+    operator : str
+        The quasi-interpolant, of those of the element (see `splinesdf.spaces`).
     stopped : str
         Why the loop ended, as in `FitResult`; "reached" if the tolerance is kept.
     evaluations : int
@@ -73,7 +75,7 @@ class Provenance:
             "bound": None if self.bound is None else _number(self.bound, "bound"),
             "bands": _bands(self.bands),
             "space": _one_of(self.space, "space", SPACES),
-            "operator": _one_of(self.operator, "operator", OPERATORS),
+            "operator": _one_of(self.operator, "operator", _OPERATORS),
             "stopped": _text(self.stopped, "stopped"),
             "evaluations": _count(self.evaluations),
             "version": _text(self.version, "version"),

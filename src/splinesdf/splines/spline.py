@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -17,13 +16,15 @@ from splinesdf.contours.nesting import nested
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, as_points
 from splinesdf.ground.blocks import in_blocks, processors
-from splinesdf.meshes import Box, Grid, Mesh, Quadtree
+from splinesdf.meshes import Box, Grid, Mesh
 from splinesdf.meshes.lattice import DistanceGrid, node_count
-from splinesdf.meshes.mesh import check_domain
+from splinesdf.meshes.mesh import check_domain, frames
 from splinesdf.shapes.shape import Shape
-from splinesdf.spaces import bspline_coefficients, tensor_ordinates
-from splinesdf.spaces.quadratic_c1 import frames, power_form
+from splinesdf.spaces.element import Element
+from splinesdf.spaces.quadratic import QUADRATIC
+from splinesdf.spaces.space import Space, space_on
 from splinesdf.spaces.tables import Evaluated
+from splinesdf.spaces.tensor import bspline_coefficients, tensor_ordinates
 from splinesdf.splines.archive import Archive, read_archive, write_archive
 from splinesdf.splines.level_sets import contours
 from splinesdf.splines.provenance import Provenance
@@ -32,9 +33,6 @@ from splinesdf.splines.tables import Border
 # After the first step along the gradient, which an exact distance would make the last, so many
 # Newton steps bring the point onto the zero level set. Each squares what is left of the error.
 _CORRECTIONS = 3
-# A quadtree's points enter it at the finest level that has at most so many places a cell. More:
-# memory, 8 bytes a place beside the 64 of a cell; fewer: points go down more levels one by one.
-_PLACES = 2.0
 # With fewer nodes of a grid a cell than this, to go from node to node is quicker than from cell
 # to cell.
 _NODES = 8
@@ -64,8 +62,8 @@ class SplineSDF:
     Attributes
     ----------
     mesh : Grid or Quadtree
-    ordinates : ndarray, shape (n_cells, 8)
-        Bernstein-Bézier ordinates of each cell (see `splinesdf.spaces`).
+    ordinates : ndarray, shape (n_cells, numbers)
+        The Bernstein-Bézier ordinates that determine each cell: eight of the quadratic element.
     name : str
     y_down : bool
         As in `Shape`: only pictures and writers look at this. If there is a shape, both are its
@@ -74,6 +72,9 @@ class SplineSDF:
         What the spline approximates, so that the exact distance stays at hand.
     made : Provenance or None
         From what request it was made, and how well it answers it.
+    element : Element
+        What its B-splines are, see `splinesdf.spaces`: quadratic unless given. Others are
+        evaluated and saved; outside the domain and on level sets they are not answered for.
     """
 
     mesh: Mesh
@@ -82,11 +83,14 @@ class SplineSDF:
     y_down: bool = False
     shape: Shape | None = None
     made: Provenance | None = None
+    element: Element = QUADRATIC
 
     def __post_init__(self) -> None:
-        ordinates = as_floats(self.ordinates, "ordinates")
-        if ordinates.ndim != 2 or ordinates.shape[1] != 8:
-            raise InputError(f"expected ordinates of shape (n_cells, 8), got {ordinates.shape}")
+        ordinates, numbers = as_floats(self.ordinates, "ordinates"), self.element.numbers
+        if ordinates.ndim != 2 or ordinates.shape[1] != numbers:
+            raise InputError(
+                f"expected ordinates of shape (n_cells, {numbers}), got {ordinates.shape}"
+            )
         object.__setattr__(self, "ordinates", ordinates)
         if self.shape is None:
             return
@@ -138,7 +142,8 @@ class SplineSDF:
             np.linspace(box[0], box[2], node_count(nx, "nx")),
             np.linspace(box[1], box[3], node_count(ny, "ny")),
         )
-        if len(x) * len(y) < _NODES * len(self.ordinates):
+        few = len(x) * len(y) < _NODES * len(self.ordinates)
+        if few or self.element.power_form is None:
             nodes = np.stack(np.meshgrid(x, y), axis=-1)
             return DistanceGrid(x, y, self(nodes, outside=outside))
         columns, rows = self._nodes_of_cells(x, 0), self._nodes_of_cells(y, 1)
@@ -147,7 +152,7 @@ class SplineSDF:
         local_x, local_y = x - self.domain[0], y - self.domain[1]
 
         def work(part: slice) -> None:
-            cells = self._frames[part], self._powers[part], columns[part], rows[part]
+            cells = self._frames[part], self._table[part], columns[part], rows[part]
             evaluate_lattice(*cells, local_x, local_y, distance)
 
         count = len(self.ordinates)
@@ -232,6 +237,7 @@ class SplineSDF:
         False) and where the gradient vanishes. Left and right as x turns into y. Each has the
         contour that directly encloses it as its ``parent``.
         """
+        self._check_quadratic("another for level sets")
         return nested(contours(self.mesh, self.ordinates, level, y_down=self.y_down))
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -245,35 +251,31 @@ class SplineSDF:
         InputError
             If the file cannot be written, or a number of the spline is not finite.
         """
-        archive = Archive(self.mesh, self.ordinates, self.name, self.y_down, self.shape, self.made)
-        write_archive(path, archive)
+        fields = (getattr(self, name) for name in Archive._fields)
+        write_archive(path, Archive(*fields))
+
+    def _check_quadratic(self, expected: str) -> None:
+        if self.element.degree != 2:
+            raise InputError(
+                f"expected a quadratic spline, or {expected}, got a {self.element.name} one"
+            )
 
     @cached_property
     def _frames(self) -> Floats:
         return frames(self.mesh.local_boxes)
 
     @cached_property
-    def _powers(self) -> Floats:
-        return power_form(self.ordinates)
+    def _table(self) -> Floats:
+        return self.element.table(self.ordinates)
 
     @cached_property
-    def _ways(self) -> tuple[Ints, Ints]:
-        """How points get to the cells of a quadtree, see `splinesdf.spaces.kernels.evaluation`."""
-        from splinesdf.spaces.kernels.evaluation import fill_ways
-
-        mesh = self.mesh
-        assert isinstance(mesh, Quadtree)
-        (m, n), levels = mesh.shape, 0
-        while levels < mesh.depth and m * n * 4 ** (levels + 1) <= _PLACES * len(self.ordinates):
-            levels += 1
-        entry = np.empty((m << levels, n << levels), dtype=np.int64)
-        walk = np.empty(len(mesh.child), dtype=np.int64)
-        fill_ways(np.array(mesh.shape), mesh.child, mesh.cell_of, levels, entry, walk)
-        return entry, walk
+    def _space(self) -> Space:
+        return space_on(self.mesh, self.element)
 
     @cached_property
     def _border(self) -> Border:
         """The spline along the domain's border, see `splinesdf.splines.kernels.extension`."""
+        self._check_quadratic('outside="nan" of it')
         from splinesdf.splines.kernels.extension import fill_drops
 
         boxes, corners = self.mesh.local_boxes, self.mesh.corners
@@ -303,20 +305,13 @@ class SplineSDF:
     def _evaluate(
         self, array: Floats, order: int, outside: Outside
     ) -> tuple[Floats, Floats, Floats]:
-        from splinesdf.spaces.kernels.evaluation import evaluate_grid, evaluate_tree
-
         _check_outside(outside)
         points = array.reshape(-1, 2)
         count = len(points)
         value = np.empty(count)
         gradient = np.empty((count if order > 0 else 0, 2))
         hessian = np.empty((count if order > 1 else 0, 3))
-        mesh, powers = self.mesh, self._powers
-        evaluate: Callable[..., int] = (
-            partial(evaluate_grid, mesh.x, mesh.y, powers)
-            if isinstance(mesh, Grid)
-            else partial(evaluate_tree, np.array(self.domain), *self._ways, powers)
-        )
+        evaluate = self._space.evaluator(self._table)
 
         def work(part: slice) -> None:
             asked = Evaluated(points[part], value[part], gradient[part], hessian[part])

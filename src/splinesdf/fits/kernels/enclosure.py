@@ -175,7 +175,7 @@ def _look(
     triangle, c, ids = parts.triangles[at], parts.triangles[at, 6:], parts.lists[at]
     errors, near, models = parts.errors, parts.near, parts.models
     depth, count = parts.sizes[at, 0], parts.sizes[at, 1]
-    grain = _GRAIN * (limits.largest + abs(anchor[2]))
+    grain = _GRAIN * (limits.largest + abs(anchor[2])) + anchor[3]
     px, py = 0.5 * (triangle[0] + triangle[2]), 0.5 * (triangle[1] + triangle[3])
     r = _radius(triangle, px, py)
     disk = (px, py, r)

@@ -1,4 +1,4 @@
-"""A quadtree that grows, with a ring of cells around its domain, and its spline's ordinates.
+"""A quadtree that grows, with a ring of cells around its domain, and its spline's coefficients.
 
 Nodes never change their number: what is known of one stays where it is. Children follow one
 another: (2i, 2j), (2i, 2j + 1), (2i + 1, 2j), (2i + 1, 2j + 1). A node of the ring is split with
@@ -11,11 +11,9 @@ the nodes of the domain beside it, so that every function that reaches into a ce
 
 from __future__ import annotations
 
-import numpy as np
-
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
-from splinesdf.spaces.tables import Nodes
+from splinesdf.spaces.tables import Mask, Nodes
 
 # Where a neighbor would be: in the domain, but coarser; or beyond it.
 _COARSER, _BEYOND = -1, -2
@@ -120,7 +118,9 @@ def _ancestor(nodes: Nodes, level: int, i: int, j: int) -> int:
 
 
 @kernel
-def coefficients(nodes: Nodes, order: Ints, own: Bools, values: Floats, result: Floats) -> None:
+def coefficients(
+    nodes: Nodes, mask: Mask, order: Ints, own: Bools, values: Floats, result: Floats
+) -> None:
     """Fill the coefficient of every node: its own value, or by subdivision of coarser ones."""
     m, n = nodes.shape[0], nodes.shape[1]
     for node in order:
@@ -131,84 +131,51 @@ def coefficients(nodes: Nodes, order: Ints, own: Bools, values: Floats, result: 
         if not (-1 <= i <= m << level and -1 <= j <= n << level):
             result[node] = 0.0  # in the ring, but no function of it reaches the domain
         else:
-            result[node] = _subdivided(nodes, result, level, i, j)
+            result[node] = _subdivided(nodes, mask, result, level, i, j)
 
 
 @kernel
-def ordinates(nodes: Nodes, cells: Ints, values: Floats, result: Floats) -> None:
-    """Fill the eight ordinates of cells from the coefficients of all nodes.
+def blocks(nodes: Nodes, mask: Mask, cells: Ints, values: Floats, result: Floats) -> None:
+    """Fill the coefficients of the 3 x 3 cells around cells from those of all nodes.
 
     Parameters
     ----------
     nodes : Nodes
+    mask : Mask
     cells : ndarray, shape (k,)
         Nodes in the domain that are not split.
     values : ndarray, shape (n,)
-    result : ndarray, shape (k, 8)
+    result : ndarray, shape (k, 9)
     """
     for place in range(cells.shape[0]):
-        node = cells[place]
-        c00, c01, c02, c10, c11, c12, c20, c21, c22 = _block(nodes, values, node)
-        result[place, 0] = 0.25 * (c00 + c01 + c10 + c11)
-        result[place, 1] = 0.25 * (c10 + c11 + c20 + c21)
-        result[place, 2] = 0.25 * (c01 + c02 + c11 + c12)
-        result[place, 3] = 0.25 * (c11 + c12 + c21 + c22)
-        result[place, 4] = 0.5 * (c11 + c10)
-        result[place, 5] = 0.5 * (c11 + c21)
-        result[place, 6] = 0.5 * (c11 + c12)
-        result[place, 7] = 0.5 * (c11 + c01)
+        for k in range(9):
+            result[place, k] = _near(nodes, mask, values, cells[place], k)
 
 
 @uncounted
-def _block(
-    nodes: Nodes, values: Floats, node: int
-) -> tuple[float, float, float, float, float, float, float, float, float]:
-    """The coefficients of the 3 x 3 cells around a node."""
-    # Typed numbers: Numba compiles a callee for each literal. Not an array that a loop fills:
-    # the compiler would add numbers from memory in another order, with other last bits.
-    return (
-        _near(nodes, values, node, np.int64(0)),
-        _near(nodes, values, node, np.int64(1)),
-        _near(nodes, values, node, np.int64(2)),
-        _near(nodes, values, node, np.int64(3)),
-        _near(nodes, values, node, np.int64(4)),
-        _near(nodes, values, node, np.int64(5)),
-        _near(nodes, values, node, np.int64(6)),
-        _near(nodes, values, node, np.int64(7)),
-        _near(nodes, values, node, np.int64(8)),
-    )
-
-
-@uncounted
-def _near(nodes: Nodes, values: Floats, node: int, k: np.int64) -> float:
+def _near(nodes: Nodes, mask: Mask, values: Floats, node: int, k: int) -> float:
     """The coefficient of the k-th of the 3 x 3 cells around a node."""
     other = nodes.near[node, k]
     if other >= 0:
         return float(values[other])
     level, i, j = nodes.level[node], nodes.place[node, 0], nodes.place[node, 1]
-    return _subdivided(nodes, values, level, i + k // 3 - 1, j + k % 3 - 1)
+    return _subdivided(nodes, mask, values, level, i + k // 3 - 1, j + k % 3 - 1)
 
 
 @uncounted
-def _subdivided(nodes: Nodes, values: Floats, level: int, i: int, j: int) -> float:
-    """A coefficient from those of the level below, which are known where there are nodes.
-
-    A half of the parent's and a quarter of each of the parent's neighbors on the child's sides.
-    """
+def _subdivided(nodes: Nodes, mask: Mask, values: Floats, level: int, i: int, j: int) -> float:
+    """A coefficient from those of the level below, which are known where there are nodes."""
     level -= 1
     if level < 0:
         return 0.0
     total = 0.0
-    for k in range(3):
-        x, y = i >> 1, j >> 1
-        if k == 1:
-            x += 2 * (i & 1) - 1
-        if k == 2:
-            y += 2 * (j & 1) - 1
+    parity = 2 * (i & 1) + (j & 1)
+    for k in range(mask.weights.shape[1]):
+        x, y = (i >> 1) + mask.steps[parity, k, 0], (j >> 1) + mask.steps[parity, k, 1]
         if not (-1 <= x <= nodes.shape[0] << level and -1 <= y <= nodes.shape[1] << level):
             continue
         node = _ancestor(nodes, level, x, y)
         known = nodes.level[node] == level
-        value = values[node] if known else _subdivided(nodes, values, level, x, y)
-        total += (0.5 if k == 0 else 0.25) * value
+        value = values[node] if known else _subdivided(nodes, mask, values, level, x, y)
+        total += mask.weights[parity, k] * value
     return total

@@ -12,7 +12,7 @@ import numpy as np
 
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.meshes import Mesh
-from splinesdf.spaces.quadratic_c1 import TRIANGLES, center_ordinates
+from splinesdf.spaces.quadratic import TRIANGLES, center_ordinates
 
 # Values within this share of the largest ordinate of the level count as reaching it when cells
 # are chosen. It must cover the rounding by which two cells disagree about their common side;

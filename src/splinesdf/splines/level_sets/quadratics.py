@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf.ground.arrays import Bools, Floats, Ints
-from splinesdf.spaces.quadratic_c1 import frames, power_form
+from splinesdf.meshes.mesh import frames
+from splinesdf.spaces.quadratic import power_form
 
 # An eigenvalue of the Hessian below this share of the other counts as zero (a parabola): the
 # center of such a hyperbola lies too far away to tell its branches apart, and only one is near.

@@ -1,0 +1,152 @@
+"""What is asked of a fit: the options of `fit`, checked and with their defaults."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypedDict, TypeVar
+
+import numpy as np
+
+from splinesdf.errors import InputError
+from splinesdf.fits.target import Target
+from splinesdf.ground.arrays import Floats, as_floats, finite, positive, shown, whole
+from splinesdf.meshes import Box
+from splinesdf.meshes.mesh import check_domain
+from splinesdf.spaces.elements import find_element
+from splinesdf.spaces.quadratic import QUADRATIC
+from splinesdf.spaces.space import Space, first_space
+
+Band = tuple[float, float]
+
+# Cells along the domain's longer side at the start. More: cells wasted where the distance is
+# smooth; fewer: more rounds for nothing, each a halving.
+_START = 4
+# A million cells are 64 MB of ordinates and minutes of work: beyond it something is wrong.
+_MAX_CELLS = 1_000_000
+# Rounding of the distance, in units of the largest coordinate, with what the proof adds for it: no
+# tolerance below it can be kept.
+_ROUNDING = 1e-13
+
+
+class FitOptions(TypedDict, total=False):
+    """The options of `splinesdf.fit`, which says what they mean."""
+
+    space: str
+    element: str
+    operator: str | None
+    band: Band | Sequence[Band] | None
+    domain: Box | None
+    start: tuple[int, int] | None
+    max_cells: int
+    min_side: float
+    certify: bool
+
+
+DEFAULTS: FitOptions = {
+    "space": "hierarchical",
+    "element": QUADRATIC.name,
+    "operator": None,
+    "band": None,
+    "domain": None,
+    "start": None,
+    "max_cells": _MAX_CELLS,
+    "min_side": 0.0,
+    "certify": True,
+}
+Function = TypeVar("Function", bound=Callable[..., object])
+
+
+def with_options(function: Function) -> Function:
+    """Have help() and completion show the options of a function by name, with their defaults."""
+    signature = inspect.signature(function)
+    own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+    options = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=value, annotation=kind)
+        for (name, value), kind in zip(
+            DEFAULTS.items(), FitOptions.__annotations__.values(), strict=True
+        )
+    ]
+    function.__signature__ = signature.replace(parameters=[*own, *options])  # type: ignore[attr-defined]
+    return function
+
+
+class Request(NamedTuple):
+    """What a fit has to do."""
+
+    tolerance: float
+    bands: Floats  # (k, 2) none for the whole domain
+    space: Space  # to start from
+    operator: str
+    max_cells: int
+    min_side: float
+    certify: bool
+
+
+def request_of(target: Target, tolerance: float, options: FitOptions) -> Request:
+    """The request that options make, or an `InputError`."""
+    if unknown := set(options) - set(FitOptions.__annotations__):
+        raise TypeError(f"fit() got an unexpected keyword argument {min(unknown)!r}")
+    asked: FitOptions = {**DEFAULTS, **options}
+    bands, element = _check_bands(asked["band"]), find_element(asked["element"])
+    name, operator, domain = asked["space"], asked["operator"], asked["domain"]
+    if operator is None:
+        operator = element.default_operator(name, len(bands) > 0)
+    element.operator(operator)
+    outward = float(max(bands.max(initial=0.0), 0.0))
+    box = target.domain(outward) if domain is None else check_domain(domain)
+    largest = max(abs(value) for value in (*target.box, *box))
+    tolerance = positive(tolerance, "tolerance")
+    max_cells = whole(asked["max_cells"], "max_cells", least=1, most=2**63 - 1)
+    min_side = finite(asked["min_side"], "min_side")
+    if min_side < 0.0:
+        raise InputError(f"expected min_side from 0 on, got {min_side:g}")
+    if tolerance <= _ROUNDING * largest:
+        raise InputError(
+            f"expected a tolerance above rounding, {_ROUNDING * largest:.1g} for this shape, "
+            f"got {tolerance:.4g}"
+        )
+    space = first_space(name, element, box, _first_cells(box, asked["start"], max_cells))
+    return Request(tolerance, bands, space, operator, max_cells, min_side, bool(asked["certify"]))
+
+
+def _check_bands(bands: Band | Sequence[Band] | None) -> Floats:
+    """One band or several as an array (k, 2)."""
+    if bands is None:
+        return np.empty((0, 2))
+    array = as_floats(bands, "a band (lo, hi) or several")
+    array = array.reshape(1, 2) if array.shape == (2,) else array
+    if array.ndim != 2 or array.shape[1] != 2 or len(array) == 0:
+        raise InputError(f"expected a band (lo, hi) or several, got {shown(bands)}")
+    if not (np.isfinite(array).all() and np.all(array[:, 0] <= array[:, 1])):
+        raise InputError(f"expected a band with finite lo <= hi, got {shown(bands)}")
+    return array
+
+
+def _first_cells(box: Box, start: tuple[int, int] | None, max_cells: int) -> tuple[int, int]:
+    """Cells each way to start from, never more than ``max_cells``."""
+    if start is None:
+        width, height = box[2] - box[0], box[3] - box[1]
+        for count in range(_START, 0, -1):
+            side = max(width, height) / count
+            m, n = max(1, round(width / side)), max(1, round(height / side))
+            if m * n <= max_cells:
+                break
+    else:
+        m, n = _check_start(start)
+    if m * n > max_cells:
+        raise InputError(
+            f"expected max_cells of at least the cells to start from, got {max_cells} for {m} x {n}"
+        )
+    return m, n
+
+
+def _check_start(start: tuple[int, int]) -> tuple[int, int]:
+    try:
+        m, n = start
+    except (TypeError, ValueError) as error:
+        raise InputError(f"expected start as two whole numbers, got {shown(start)}") from error
+    m, n = (whole(count, "start", least=1, most=_MAX_CELLS) for count in (m, n))
+    if m * n > _MAX_CELLS:
+        raise InputError(f"expected a start of 1 to {_MAX_CELLS:,} cells, got {m} x {n}")
+    return m, n

@@ -1,0 +1,17 @@
+"""All elements by name: a new one is a file of its own and a line here."""
+
+from __future__ import annotations
+
+from splinesdf.errors import InputError
+from splinesdf.spaces.cubic import CUBIC
+from splinesdf.spaces.element import Element
+from splinesdf.spaces.quadratic import QUADRATIC
+
+ELEMENTS = {element.name: element for element in (QUADRATIC, CUBIC)}
+
+
+def find_element(name: object) -> Element:
+    """The element of a name, or an `InputError`."""
+    if not isinstance(name, str) or name not in ELEMENTS:
+        raise InputError(f"expected an element of {', '.join(ELEMENTS)}, got {name!r:.60}")
+    return ELEMENTS[name]
