@@ -38,6 +38,9 @@ from splinesdf.fits.fit import FitResult, fit_steps, require_reached
     "--space", default="hierarchical", help="hierarchical, tensor or uniform.", show_default=True
 )
 @click.option("--operator", help="S, W, V or P.  [default: S; P for bands; W on a tensor grid]")
+@click.option(
+    "--element", default="quadratic", help="quadratic, or cubic (uniform).", show_default=True
+)
 @click.option("--no-proof", is_flag=True, help="Sample what a proof takes a closer look for.")
 @click.option("--domain", type=float, nargs=4, help="XMIN YMIN XMAX YMAX.")
 @click.option("--max-cells", type=click.IntRange(min=1), help="Give up beyond so many cells.")
