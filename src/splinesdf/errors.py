@@ -1,4 +1,4 @@
-"""What can go wrong, each as one line: what was expected, what came, what to do."""
+"""All errors, each one line: the expected, the given, the remedy."""
 
 from __future__ import annotations
 

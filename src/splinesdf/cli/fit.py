@@ -55,8 +55,6 @@ def fit(
     output: str | None,
     picture: str | None,
     as_json: bool,
-    max_cells: int | None,
-    no_proof: bool,
     **options: Any,
 ) -> None:
     """Fit a signed distance function to SHAPE within a tolerance."""
@@ -68,9 +66,9 @@ def fit(
         from splinesdf.plot import check_format as check_picture
 
         check_picture(picture)
-    if max_cells is not None:
-        options["max_cells"] = max_cells
-    options |= {"band": options["band"] or None, "certify": not no_proof}
+    options |= {"band": options["band"] or None, "certify": not options.pop("no_proof")}
+    if options["max_cells"] is None:
+        del options["max_cells"]
     began = time.perf_counter()
     result = fitted(source, tolerance_of(source, tolerance), **options)
     seconds = time.perf_counter() - began

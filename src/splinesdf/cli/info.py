@@ -18,7 +18,7 @@ from splinesdf.cli.shapes import (
 @click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule.")
 @click.option("--close", is_flag=True, help="Close open contours by a straight piece.")
 def info(file: str, fill: str | None, close: bool) -> None:
-    """What is in FILE: a saved fit (.npz) or a shape."""
+    """Describe FILE: a saved fit (.npz) or a shape."""
     if Path(file).suffix.lower() == ".npz":
         spline = ss.load(file)
         report.print_pairs(

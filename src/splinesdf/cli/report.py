@@ -79,7 +79,7 @@ def print_pairs(**pairs: str) -> None:
 
 
 def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
-    """What was fitted, how well, and what it took."""
+    """Shape, errors and cost of a fit."""
     made = result.spline.made
     method = "" if made is None else f"{made.space}, {made.operator}"
     where = "where the bands are" if result.bands else "over the whole domain"
@@ -98,7 +98,7 @@ def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
 
 
 def provenance(made: Provenance | None) -> dict[str, str]:
-    """What a saved fit says of how it was made."""
+    """The provenance of a saved fit."""
     if made is None:
         return {"made": "the file does not say how"}
     bands = ", ".join(f"{low:.6g} to {high:.6g}" for low, high in made.bands)
@@ -184,7 +184,7 @@ def _why_nothing(shape: Shape, distance: float) -> str:
 
 
 def print_check(path: str, worst: Worst, tolerance: float) -> None:
-    """What was found in a file that was read back."""
+    """Deviation and counts of a file that was read back."""
     x, y = worst.point
     print_pairs(
         check=f"{path}, read back: {sum(worst.curves.values())} curves",
@@ -199,7 +199,7 @@ def print_check(path: str, worst: Worst, tolerance: float) -> None:
 
 
 def wrong_sides(sides: Sides) -> str:
-    """What curves of one distance have lost, have twice, or have the wrong way around."""
+    """Region that curves of one distance miss, have twice, or have the wrong way around."""
     x, y = sides.point
     parts = (
         (sides.lost, "nearer, but not enclosed (a contour is lost, or there twice)"),
@@ -245,7 +245,7 @@ def print_tables(rows: Iterable[Row]) -> None:
 
 
 def _printed(row: Row) -> str:
-    """What the paper prints, in its three digits, with a star if ours round to others."""
+    """The figure that the paper prints, in three digits, with a star if ours round to others."""
     if row.printed is None:
         return ""
     text = f"{row.printed:.2e}"

@@ -1,4 +1,4 @@
-"""What the commands share: a shape from the command line, its tolerance, files to write."""
+"""Options that commands share: a shape, its tolerance, files to write."""
 
 from __future__ import annotations
 

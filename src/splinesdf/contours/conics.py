@@ -1,4 +1,4 @@
-"""What each arc of a contour is, and what consecutive arcs are together.
+"""The conic of each arc of a contour, and of consecutive arcs together.
 
     arcs ─classify─→ line, circle, ellipse, parabola or hyperbola ─elements─→ one line where arcs
     lie on one line, one circular arc where they lie on one circle

@@ -96,7 +96,7 @@ class Contour:
             raise InputError("expected a closed contour to end exactly where it starts")
 
     def __getstate__(self) -> tuple[dict[str, Any], tuple[Contour, ...]]:
-        """What pickle and copy take: the parent last of a few ancestors, the outermost first.
+        """The state for pickle and copy: the parent last of a few ancestors, the outermost first.
 
         They recurse into what they have not met yet. Of n contours in one another, the parent
         alone would take them n deep; with the ancestors at 1/2, 3/4, 7/8 ... of the depth before

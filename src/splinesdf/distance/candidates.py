@@ -1,4 +1,4 @@
-"""What a cell must know of a shape: the few parts of its boundary that can be closest there."""
+"""Candidates: the few parts of a boundary that can be closest in a cell."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from splinesdf.ground.arrays import Floats, Ints
 
 
 class Bent(NamedTuple):
-    """What is read of arclets, of how they bend and of how they follow one another."""
+    """Arclets, their curvature bounds, and their order along the boundary."""
 
     arcs: Floats  # as in `Arclets`
     following: Ints

@@ -72,7 +72,7 @@ class Wanted(NamedTuple):
 
 
 class _Search(NamedTuple):
-    """What does not change while triangles are halved."""
+    """A search, as far as it does not change while triangles are halved."""
 
     target: Target
     bands: Floats
@@ -299,7 +299,7 @@ def _in_bands(
     error: Floats,
     margins: tuple[Floats, Floats, Floats],
 ) -> tuple[Floats, Bools]:
-    """What |s - u| is at least in a point of a band on each triangle, and whether it can meet one.
+    """A lower bound of |s - u| in a point of a band on each triangle, and whether it can meet one.
 
     In the middle of the longest side it is ``error``, and that counts if this point does. On all
     of the triangle it is less by the first margin at most; that counts if the spline takes a value

@@ -73,7 +73,7 @@ class FitResult:
 
     @property
     def tolerance(self) -> float | None:
-        """What was asked; None of `interpolate`, which is asked for none."""
+        """The largest |s - u| that was asked for; None of `interpolate`."""
         return self._made.tolerance
 
     @property

@@ -1,4 +1,4 @@
-"""What is asked of a fit: the options of `fit`, checked and with their defaults."""
+"""The request to a fit: the options of `fit`, checked and with their defaults."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def with_options(function: Function) -> Function:
 
 
 class Request(NamedTuple):
-    """What a fit has to do."""
+    """A fit's task: tolerance, where it counts, the space to start from, and limits."""
 
     tolerance: float
     bands: Floats  # (k, 2) none for the whole domain

@@ -1,4 +1,4 @@
-"""What a fit asks of a target, and how little of it twice.
+"""Samples of the exact distance that a fit asks of a target, none of them twice.
 
 On a grid a refinement moves all samples. On a quadtree a node keeps the distance at its center; and
 that at its lower left corner, if the operator has samples in corners: a corner belongs to the cell

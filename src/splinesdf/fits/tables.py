@@ -31,7 +31,7 @@ class Limits(NamedTuple):
 
 
 class Brackets(NamedTuple):
-    """What is known of the largest error on the halves of triangles, and parts still open."""
+    """Bounds of the largest error on the halves of triangles, and parts still open."""
 
     low: Floats  # (n, 2) it is at least this
     high: Floats  # (n, 2) and at most this, not counting open parts

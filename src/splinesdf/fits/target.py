@@ -1,4 +1,4 @@
-"""`Target`: what a fit and its certificate ask of a shape.
+"""`Target`: the questions of a fit and its certificate to a shape.
 
 The loop of `fit` and the certificate know nothing else of what they approximate.
 """
@@ -24,7 +24,7 @@ _ASKED = 4.0 / 256.0
 
 
 class Target(Protocol):
-    """What has a distance. Simplices are relative to `origin`, points are not."""
+    """An object with a distance. Simplices are relative to `origin`, points are not."""
 
     @property
     def box(self) -> Box:

@@ -19,7 +19,7 @@ from splinesdf.splines.spline import SplineSDF
 
 
 class Known(NamedTuple):
-    """What is known of the largest |s - u| in each of some cells."""
+    """Bounds of the largest |s - u| in each of some cells."""
 
     low: Floats  # (n,) it is at least this, up to rounding
     high: Floats  # (n,) and at most this
@@ -63,7 +63,7 @@ class Trial:
 
     @property
     def known(self) -> Known:
-        """What is known of the errors in all cells."""
+        """Bounds of the errors in all cells."""
         return self._known.take(self._space.cells)
 
     def learn(self, cells: Ints, errors: Known) -> None:

@@ -1,1 +1,1 @@
-"""What every floor stands on: arrays, compilation, threads, files. Nothing of the field."""
+"""The ground of every floor: arrays, compilation, threads, files. Nothing of the field."""

@@ -155,7 +155,7 @@ def _one_line(text: object) -> str:
 
 
 def _lost(values: object) -> str:
-    """What NumPy would lose of masked arrays and booleans, in lists, too; nothing if none is there.
+    """The masked arrays or booleans that NumPy would lose, in lists too; nothing if none is there.
 
     It drops masks, and of a list that holds a number and True it makes two numbers. Lists are
     looked through level by level and by the types in each, as they may hold millions.

@@ -36,7 +36,7 @@ _BLOCK = 1 << 18
 
 
 class _Unusual(Exception):
-    """What is a zip file, but not as it is written here."""
+    """A zip file that was not written by this module."""
 
 
 def write_npz(file: BinaryIO, fields: Fields) -> None:

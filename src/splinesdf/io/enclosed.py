@@ -1,4 +1,4 @@
-"""What curves of a file enclose, against the exact distance: nothing lost, nothing twice.
+"""The region that curves of a file enclose, against the exact distance: no part lost or twice.
 
 All points of a curve may be at the right distance though another curve is missing, or is there
 twice. So points beside the true offset, beside the curves, and all over are asked for their side.

@@ -59,7 +59,7 @@ class Grid:
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """What determines it, as a file holds it."""
+        """The arrays that determine it, as a file holds them."""
         return {"x": self.x, "y": self.y}
 
     @property

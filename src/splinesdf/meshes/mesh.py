@@ -1,4 +1,4 @@
-"""What every mesh answers."""
+"""`Mesh`: the questions that every mesh answers."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Mesh(Protocol):
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """What determines it, as a file holds it."""
+        """The arrays that determine it, as a file holds them."""
 
     @property
     def domain(self) -> Box:

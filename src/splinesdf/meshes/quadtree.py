@@ -117,7 +117,7 @@ class Quadtree:
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """What determines it, as a file holds it: which nodes are split."""
+        """The arrays that determine it, as a file holds them: which nodes are split."""
         domain = np.array(self.domain, dtype=np.float64)
         return {"domain": domain, "shape": np.array(self.shape), "split": self.child >= 0}
 

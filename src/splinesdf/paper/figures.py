@@ -196,7 +196,7 @@ def _new(height: float, *, right: float = 0.0) -> Figure:
 
 
 def _curve(name: str, ax: Axes, *, dashed: bool = False) -> None:
-    """What the curve encloses, the curve, and the unit square around it."""
+    """The region inside the curve, the curve, and the unit square around it."""
     plot.plot_fill(paper.shape(name), ax)
     formula = paper.formula(name)
     stop = formula.start + (formula.stop - formula.start) / _TRACES[name]

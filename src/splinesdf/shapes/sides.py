@@ -1,4 +1,4 @@
-"""What is filled on both sides of the chains of a drawing, and which of them bound it.
+"""The fill on both sides of the chains of a drawing, and which of them bound it.
 
 A chain has the same winding number along all of one side, so one look at each side decides. The
 look is taken where the chain is clearest of all others, halfway to what is next to it.

@@ -151,7 +151,7 @@ class Element:
         return _product(numbers, self.to_ordinates[:1, -1])[:, 0]
 
     def table(self, numbers: Floats) -> Floats:
-        """What evaluation reads: truncated powers of cells, or the polynomials of triangles."""
+        """The table that evaluation reads: truncated powers of cells, or triangles' polynomials."""
         return self.polynomials(numbers) if self.power_form is None else self.power_form(numbers)
 
     def polynomials(self, numbers: Floats) -> Floats:

@@ -26,11 +26,11 @@ Function = Callable[[Floats], Floats]
 
 
 class Space(Protocol):
-    """What a spline space answers. B-splines have numbers; so have cells, in the mesh's order."""
+    """A spline space. B-splines are numbered, and cells, in the mesh's order."""
 
     @property
     def element(self) -> Element:
-        """What its B-splines are."""
+        """The family of its B-splines."""
 
     @property
     def name(self) -> str:

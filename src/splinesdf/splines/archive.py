@@ -49,7 +49,7 @@ _THINNEST = 1e-150
 
 
 class Archive(NamedTuple):
-    """What a file holds: the fields of `SplineSDF`."""
+    """The contents of a file: the fields of `SplineSDF`."""
 
     mesh: Mesh
     ordinates: Floats

@@ -25,7 +25,7 @@ def _this_version() -> str:
 
 @dataclass(frozen=True)
 class Provenance:
-    """What was asked of `fit` or `interpolate`, what it found, and which splinesdf it was.
+    """The request to `fit` or `interpolate`, the errors found, and the version of splinesdf.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What counts on a triangle: all of it, or points where the distance or the spline is in a band.
+"""Points of a triangle that count: all, or those where the distance or the spline is in a band.
 
 Used by `enclosure`. The spline has the coefficients AA BB CC AB BC CA; p is the middle of AB.
 """
@@ -42,7 +42,7 @@ def meets(bands: Floats, around: bool, low: float, high: float, c: Floats, grain
 
 @uncounted
 def seen(errors: Floats, margin: float, value: float, room: float) -> float:
-    """What |s - u| is at least in a corner or in p, where it is known up to some margins."""
+    """A lower bound of |s - u| in a corner or in p, where it is known up to some margins."""
     corners = max(max(abs(errors[0]), abs(errors[1])), abs(errors[2]))
     return float(max(max(0.0, corners - margin), abs(value) - room))
 
@@ -58,7 +58,7 @@ def seen_in_bands(
     room: float,
     everywhere: float,
 ) -> float:
-    """What |s - u| is at least in some point of a triangle that counts for the bands.
+    """A lower bound of |s - u| in some point of a triangle that counts for the bands.
 
     It is at least ``everywhere`` on all of it. That counts if the spline, or the distance, is
     known to be below a band's end in one point and above its other end in one, as both are

@@ -168,7 +168,7 @@ def _enclose_one(
 def _look(
     bent: Bent, anchor: Floats, limits: Limits, parts: Parts, at: int, low: float
 ) -> tuple[bool, float, float, int]:
-    """What is to be known of the error on one part, of which it is known to be at least low.
+    """Bounds of the error on one part, of which it is known to be at least low.
 
     Whether it counts for the bands, what the error is at least and at most there, and the effort.
     """

@@ -51,7 +51,7 @@ def _several(
     key: str,
     read: Callable[[dict[str, Any], tuple[str, ...]], list[Floats]],
 ) -> list[list[Floats]]:
-    """What ``read`` makes of each entry of a list; errors name the entry by its number."""
+    """Each entry of a list by ``read``; errors name the entry by its number."""
     entries = content[key]
     if not isinstance(entries, list) or not entries:
         raise InputError(f'expected "{key}" to be a list of curves, got {_kind(entries)}')
@@ -101,7 +101,7 @@ def _text(content: dict[str, Any], key: str, default: str) -> str:
 
 
 def _kind(value: Any) -> str:
-    """What a JSON value is, in JSON's own words."""
+    """The type of a JSON value, in JSON's own words."""
     if value is None:
         return "null"
     if isinstance(value, bool):

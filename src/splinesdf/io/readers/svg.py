@@ -55,7 +55,7 @@ _FLAT = 1e-12
 
 @dataclass(frozen=True)
 class _Context:
-    """What an element hands down to its children."""
+    """Properties that an element hands down to its children."""
 
     matrix: Matrix = IDENTITY
     filled: bool = True

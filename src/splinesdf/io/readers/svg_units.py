@@ -1,4 +1,4 @@
-"""What an SVG document says its unit is: a physical size, and a viewBox in units of the drawing."""
+"""The unit of an SVG document: its physical size, and a viewBox in units of the drawing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the writers of formats are told beside the contours, and what each format has no use for."""
+"""Options of the writers of formats, and which formats have no use for which."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ _ARC_TURN = 2.0 * math.pi / 40.0
 
 
 class Curve(Protocol):
-    """What can be compiled: points at parameters between two ends."""
+    """A curve to compile: points at parameters between two ends."""
 
     @property
     def start(self) -> float:

@@ -207,7 +207,7 @@ def _seen_from(domain: Floats, side: int, x: float, y: float) -> tuple[float, fl
 
 @uncounted
 def _lower_bound(edges: Floats, i: int, j: int, drop: float, a: float, b: float) -> float:
-    """What s + distance is at least between two knots: that of their chord, less the drop."""
+    """A lower bound of s + distance between two knots: that of their chord, less the drop."""
     t0, t1 = edges[i, 0], edges[j, 0]
     slope = (edges[j, 1] - edges[i, 1]) / (t1 - t0)
     if abs(slope) < 1.0:

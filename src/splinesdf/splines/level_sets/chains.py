@@ -110,7 +110,7 @@ def _chains(start: Ints, end: Ints) -> list[tuple[Ints, bool]]:
 
 
 def _without_short(f: Quadratics, points: Floats, shortest: float) -> tuple[Quadratics, Floats]:
-    """What is left of a chain of n arcs and its n + 1 points; no points if nothing is."""
+    """The rest of a chain of n arcs and n + 1 points without short arcs; no points if all are."""
     around, far = _around(f, points[:-1], points[1:], shortest)
     f = f.take(np.sort(np.append(np.arange(len(points) - 1), around)))
     points = np.insert(points, around + 1, far, axis=0)
