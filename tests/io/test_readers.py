@@ -198,7 +198,7 @@ PNG = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"
         (b"", "empty"),
         (b"\xef\xbb\xbf \r\n\t", "empty"),
         (PNG, "expected text in UTF-8, got something else at byte 1"),
-        ("<svg/>".encode("utf-16"), "UTF-8"),
+        ("<svg/>".encode("utf-16-le"), "binary data"),
         ("1,2 # caf\N{LATIN SMALL LETTER E WITH ACUTE}".encode("latin-1"), "at byte 10"),
         (b"PK\x03\x04\0\0", "binary data"),
     ],
@@ -223,7 +223,7 @@ def test_wrong_paths_are_refused(tmp_path: Path) -> None:
         ("pipe.svg", "pipe or a device"),
         ("loop.svg", "cannot be read"),
         ("folder.svg/a.svg/b.svg", "does not exist"),
-        ("shape.docx", r"ending in \.csv, \.dat, \.json, \.svg, got '\.docx'"),
+        ("shape.docx", r"ending in \.csv, \.dat, .*got '\.docx'"),
         ("shape", "got 'none'"),
     ]:
         with pytest.raises(ss.InputError, match=expected) as caught:

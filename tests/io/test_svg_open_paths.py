@@ -21,7 +21,7 @@ def svg(tmp_path: Path) -> Svg:
     def read(body: str, *, root: str = "", **options: object) -> ss.Shape:
         file = tmp_path / "drawing.svg"
         file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {root}>{body}</svg>', "utf-8")
-        return ss.read(file, **options)
+        return ss.read(file, **{"stroke": "centre", **options})
 
     return read
 

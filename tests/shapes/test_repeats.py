@@ -121,11 +121,12 @@ def test_every_way_in(tmp_path: Path) -> None:
         "svg path": ss.Shape.from_svg_path(d(*rings)),
         "csv": read(tmp_path, "a.csv", table(*rings)),
         "dat": read(tmp_path, "a.dat", table(*rings)),
-        "mere outlines": read(tmp_path, "a.svg", drawing(outlines)),
+        "mere outlines": read(tmp_path, "a.svg", drawing(outlines), stroke="centre"),
         "mere outlines, in one and apart": read(
             tmp_path,
             "c.svg",
             drawing(f'<path fill="none" stroke="red" d="{d(OUTER, HOLE)}"/>', outlines),
+            stroke="centre",
         ),
         "an element again": read(tmp_path, "b.svg", drawing(whole, whole)),
         "an element again, moved": read(
@@ -168,7 +169,7 @@ def test_a_circle_started_elsewhere_is_the_same(second: str, tmp_path: Path) -> 
         '<circle cx="5" cy="3" r="3" fill="none" stroke="red"/>',
         hole.format(second),
     )
-    shape = read(tmp_path, "round.svg", text)
+    shape = read(tmp_path, "round.svg", text, stroke="centre")
     assert shape.loop_count == 2
     assert "path 3 as circle 2" in shape.notes[0]
     assert ss.signed_distance(shape, (5.0, 3.0)) == pytest.approx(3.0, abs=1e-12)

@@ -295,7 +295,7 @@ def _feet(
         outline.arcs,
         cells.points[: cells.starts[-1]],
         feet.distance,
-        shape.fill == "evenodd",
+        0 if shape.fill == "evenodd" else 1,
         inside,
     )
     np.negative(feet.distance, out=feet.distance, where=inside)

@@ -14,30 +14,50 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.ground.paths import as_path, shortened
 from splinesdf.io.readers import READERS
 from splinesdf.io.readers.points import read_blocks
+from splinesdf.io.readers.source import Source, checked_options
 from splinesdf.shapes.shape import Shape
 
+# Bytes of a file. More: minutes and gigabytes before the first distance; fewer: maps of whole
+# countries are refused.
+_LARGEST = 500_000_000
 
-def read(path: str | os.PathLike[str], *, fill: str | None = None, close: bool = False) -> Shape:
+
+def read(
+    path: str | os.PathLike[str],
+    *,
+    fill: str | None = None,
+    close: bool = False,
+    stroke: str | None = None,
+    ignore: str | tuple[str, ...] = (),
+) -> Shape:
     """Read a shape; the file's extension says how.
 
     Parameters
     ----------
     path : str or path
-        ``.svg`` (paths and basic shapes, in user units, y pointing down), ``.json`` (formulas),
-        ``.csv`` or ``.dat`` (the corners of polygons, a blank line between two).
+        ``.svg`` or ``.svgz`` (what elements fill, in user units, y pointing down), ``.json``
+        (formulas), ``.csv`` or ``.dat`` (the corners of polygons, a blank line between two).
     fill : {"nonzero", "evenodd"}, optional
-        Default: what the file says; else nonzero, or evenodd for a drawing of mere outlines. And
-        unless it is given, a contour that is drawn several times counts once.
+        Instead of the file's rule, of a drawing that of each element. Default: what the file says,
+        else nonzero, or evenodd for lines. And unless it is given, a contour that is drawn several
+        times counts once.
     close : bool
-        Close open contours by a straight piece instead of refusing them. Those of a drawing are
-        joined first where their ends meet, within 1e-6 of its size.
+        Close open lines by a straight piece instead of refusing them. Those of a drawing are
+        joined first where their ends meet, within 1e-6 of its size. (A fill is always closed.)
+    stroke : {"none", "centre"}, optional
+        Of a drawing's strokes: "none" reads what is filled only, as a stroke fills nothing;
+        "centre" also the closed lines that are stroked and not filled, as a laser or a plotter
+        follows them. None unless the file says otherwise, as those of `write` do.
+    ignore : {"clip-path", "mask"} or several
+        Read a drawing as if it had none of these, which otherwise cut it, or are refused where
+        they are no regions.
 
     Returns
     -------
     Shape
         Its ``notes`` name what the file holds beside it, such as texts, images or open paths, what
         is drawn again, and how long a drawing says that one unit is, if that is neither a
-        millimeter nor an inch.
+        millimeter nor an inch; ``unit`` is that length in millimeters.
 
     Raises
     ------
@@ -47,13 +67,14 @@ def read(path: str | os.PathLike[str], *, fill: str | None = None, close: bool =
     InputError
         If the file is missing, cannot be read, or is not what its extension says.
     """
+    options = checked_options(fill, close, stroke, ignore)
     with _named(path) as file:
         suffix = file.suffix.lower()
         if suffix not in READERS:
             raise InputError(
                 f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
             )
-        return READERS[suffix](_text(file), file.stem, fill, close)
+        return READERS[suffix](Source(_content(file), file.stem, suffix), options)
 
 
 def read_points(path: str | os.PathLike[str]) -> Floats:
@@ -70,7 +91,14 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
         If the file cannot be read or a line is not two numbers.
     """
     with _named(path) as file:
-        return np.concatenate([points for _, points in read_blocks(_text(file), finite=False)])
+        return np.concatenate(
+            [
+                points
+                for _, points in read_blocks(
+                    Source(_content(file), file.stem, file.suffix).text(), finite=False
+                )
+            ]
+        )
 
 
 @contextmanager
@@ -90,27 +118,20 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise type(error)(f"{name if name.isprintable() else repr(name)}: {error}") from error
 
 
-def _text(file: Path) -> str:
+def _content(file: Path) -> bytes:
     try:
         if file.exists() and not file.is_file():
             # Reading from a pipe or a device might never end.
             raise InputError("expected a regular file, got a pipe or a device")
-        content = file.read_bytes()
+        if file.stat().st_size > _LARGEST:
+            raise InputError(
+                f"expected a file of up to {_LARGEST:,} bytes, got {file.stat().st_size:,}: leave "
+                "out what is not needed"
+            )
+        return file.read_bytes()
     except FileNotFoundError as error:
         raise InputError(f"the file does not exist in {str(file.parent)!r}") from error
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}") from error
     except ValueError as error:
         raise InputError(f"expected a file's path, got one with {error}") from error
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"expected text in UTF-8, got something else at byte {error.start + 1}: "
-            f"is it really a {file.suffix} file?"
-        ) from error
-    if "\0" in text:
-        raise InputError(f"expected text, got binary data: is it really a {file.suffix} file?")
-    if not text.strip():
-        raise InputError("the file is empty")
-    return text

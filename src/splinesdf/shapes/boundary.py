@@ -12,7 +12,6 @@ from splinesdf.arclets.crossings import control_points, degrees
 from splinesdf.arclets.cutting import Arcs, Sequences, assemble, ends, split
 from splinesdf.arclets.points import tangents_at
 from splinesdf.arclets.tables import Arclets
-from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.shapes.parts import MERGE, Parts, chain_ends, cut_at_crossings, groups, without_cuts
 from splinesdf.shapes.sides import bounding, look_at_sides
@@ -27,34 +26,34 @@ _TOUCHING = 64 * 2.220446049250313e-16
 _LONG = 8.0
 
 
-def filled_boundary(outline: Arclets, evenodd: bool, largest: float) -> Arclets:
+def touching_of(largest: float) -> float:
+    """The distance within which curves count as touching, by the largest coordinate."""
+    return _TOUCHING * largest
+
+
+def filled_boundary(outline: Arclets, least: int, largest: float) -> Arclets | None:
     """The arclets that have the filled region on exactly one side, which is their left.
 
     Parameters
     ----------
     outline : Arclets
         All that was drawn.
-    evenodd : bool
-        The fill rule; otherwise nonzero.
+    least : int
+        The fill rule: winding numbers of at least so much, with either sign; odd ones for 0.
     largest : float
         The largest absolute coordinate of the shape, in its own system.
 
-    Raises
-    ------
-    InputError
-        If nothing is filled.
+    Returns
+    -------
+    Arclets or None
+        None if nothing is filled: all is traced to and fro, or nowhere wider than `touching_of`.
     """
-    touching = _TOUCHING * largest
+    touching = touching_of(largest)
     parts = cut_at_crossings(outline, touching)
-    sides = look_at_sides(outline, parts, evenodd, touching)
+    sides = look_at_sides(outline, parts, least, touching)
     keep, left = bounding(outline, parts, sides, touching)
     if not keep.any():
-        rule, other = ("evenodd", "nonzero") if evenodd else ("nonzero", "evenodd")
-        raise InputError(
-            f"the contours fill nothing under the rule {rule!r}: they are traced to and fro, or "
-            f"twice, or nowhere wider than the rounding of their coordinates, {touching:.2g}; draw "
-            f"each once, or try fill={other!r}"
-        )
+        return None
     if keep.all() and left.all() and parts.closed.all():
         return outline
     healed = _cut_in_vain(outline, parts, keep, left, 2.0 * MERGE * touching)

@@ -19,7 +19,7 @@ from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_points, finite, whole
-from splinesdf.shapes.boundary import filled_boundary
+from splinesdf.shapes.boundary import filled_boundary, touching_of
 from splinesdf.shapes.loops import closed_loops
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, periodic_cubic_spline, polygon
@@ -58,6 +58,8 @@ class Shape:
         For titles and messages.
     notes : tuple of str
         What was left out or mended, one line each.
+    unit : float or None
+        How many millimeters one unit of the coordinates is, if the source says.
     """
 
     control: Floats
@@ -67,6 +69,7 @@ class Shape:
     y_down: bool = False
     name: str = ""
     notes: tuple[str, ...] = field(default=())
+    unit: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "control", as_points(self.control))
@@ -82,6 +85,7 @@ class Shape:
         name: str = "",
         notes: tuple[str, ...] = (),
         once: bool | None = None,
+        unit: float | None = None,
     ) -> Shape:
         """Assemble a shape from loops of Bézier pieces of any degree.
 
@@ -97,6 +101,8 @@ class Shape:
             Count a contour that is drawn several times once, wherever it starts, is cut, or
             leads, and say so in the notes. Under either rule a hole would vanish that is drawn
             twice. True unless ``fill`` is given, which then decides.
+        unit : float, optional
+            Millimeters that one unit of the coordinates is.
 
         Raises
         ------
@@ -121,6 +127,7 @@ class Shape:
             y_down=y_down,
             name=name,
             notes=notes,
+            unit=unit,
         )
 
     @classmethod
@@ -308,7 +315,15 @@ class Shape:
             If nothing is filled: every contour is traced to and fro, or twice under "evenodd".
         """
         largest = float(np.abs(self.control).max())
-        return filled_boundary(self.arclets, self.fill == "evenodd", largest)
+        found = filled_boundary(self.arclets, 0 if self.fill == "evenodd" else 1, largest)
+        if found is None:
+            other = "nonzero" if self.fill == "evenodd" else "evenodd"
+            raise InputError(
+                f"the contours fill nothing under the rule {self.fill!r}: they are traced to and "
+                "fro, or twice, or nowhere wider than the rounding of their coordinates, "
+                f"{touching_of(largest):.2g}; draw each once, or try fill={other!r}"
+            )
+        return found
 
     @cached_property
     def bends(self) -> Bends:

@@ -43,7 +43,7 @@ class Sides(NamedTuple):
     length: Floats  # (n,) of the chain
 
 
-def look_at_sides(outline: Arclets, parts: Parts, evenodd: bool, touching: float) -> Sides:
+def look_at_sides(outline: Arclets, parts: Parts, least: int, touching: float) -> Sides:
     """Look at both sides of each chain; what is within twice ``touching`` of it is on top of it."""
     from splinesdf.arclets.kernels.winding import fill_inside  # Numba loads only when it is used
 
@@ -81,7 +81,7 @@ def look_at_sides(outline: Arclets, parts: Parts, evenodd: bool, touching: float
             outline.arcs,
             points,
             nowhere,
-            evenodd,
+            least,
             filled,
         )
         sides.append(filled)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import os
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
@@ -103,7 +104,9 @@ def _fields(archive: Archive) -> Fields:
     about = {
         "name": str(archive.name),
         "y_down": bool(archive.y_down),
-        "shape": None if shape is None else {"fill": shape.fill, "notes": list(shape.notes)},
+        "shape": None
+        if shape is None
+        else {"fill": shape.fill, "notes": list(shape.notes), "unit": shape.unit},
         "made": None if made is None else dataclasses.asdict(made),
         "element": archive.element.name,
     }
@@ -131,6 +134,8 @@ def _checked(fields: Fields) -> Archive:
     said = _json(fields)
     if version < _VERSION and isinstance(said, dict) and "element" not in said:
         said = said | {"element": QUADRATIC.name}
+        if isinstance(said.get("shape"), dict):
+            said["shape"] = said["shape"] | {"unit": None}
     about = _members(said, {"name", "y_down", "shape", "made", "element"}, "about")
     element = find_element(about["element"])
     space_on(mesh, element)  # refuses what has no such B-splines
@@ -187,8 +192,10 @@ def _shape(fields: Fields, about: object, name: str, y_down: bool) -> Shape | No
         if have := sorted(set(fields) & _SHAPE):
             raise InputError(f"expected no shape, got {have}")
         return None
-    words = _members(about, {"fill", "notes"}, "shape")
-    fill, notes = words["fill"], _typed(words["notes"], list, "notes")
+    words = _members(about, {"fill", "notes", "unit"}, "shape")
+    fill, notes, unit = words["fill"], _typed(words["notes"], list, "notes"), words["unit"]
+    if unit is not None and not (_typed(unit, float, "unit") > 0.0 and math.isfinite(unit)):
+        raise InputError(f"expected a unit above 0, got {unit:g}")
     if fill not in ("nonzero", "evenodd"):
         raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r:.60}")
     control = _floats(fields, "control", (None, 2))
@@ -210,6 +217,7 @@ def _shape(fields: Fields, about: object, name: str, y_down: bool) -> Shape | No
         y_down=y_down,
         name=name,
         notes=tuple(_typed(note, str, "a note") for note in notes),
+        unit=unit,
     )
 
 

@@ -36,7 +36,7 @@ def fill_inside(
     arcs: Floats,
     points: Floats,
     distance: Floats,
-    evenodd: bool,
+    least: int,
     inside: Bools,
 ) -> None:
     """Fill whether each point is inside, by its winding number and the fill rule.
@@ -50,8 +50,8 @@ def fill_inside(
     distance : ndarray, shape (n,)
         To the boundary of the filled region, or a lower bound. A point nearer to an earlier one
         than that one's distance is on the same side: no boundary lies between them.
-    evenodd : bool
-        Odd numbers are inside; otherwise all but zero.
+    least : int
+        Numbers of at least so much, with either sign, are inside; odd ones for 0.
     inside : ndarray of bool, shape (n,)
     """
     nodes = np.empty(_STACK, dtype=np.int64)
@@ -68,7 +68,7 @@ def fill_inside(
                 anchor_x, anchor_y, anchor_squared = px, py, here
         else:
             number = _number(boxes, ranges, chain, arcs, nodes, (px, py), distance[i], grain)
-            last = number % 2 != 0 if evenodd else number != 0
+            last = number % 2 != 0 if least == 0 else abs(number) >= least
             anchor_x, anchor_y, anchor_squared = px, py, here
         inside[i] = last
 

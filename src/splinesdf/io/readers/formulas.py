@@ -11,6 +11,7 @@ from typing import Any
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import compile_curve
 from splinesdf.shapes.sources.formula import parse_curve
@@ -20,7 +21,7 @@ _WHOLE = ("fill", "name")
 _FULL_TURN = [0.0, "2*pi"]
 
 
-def formula_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
+def formula_shape(source: Source, options: Options) -> Shape:
     """The curves of ``{"x": ..., "y": ..., "t": [start, stop]}`` or of a list ``"loops"`` of these.
 
     ``"t"`` may be missing (0 to 2π). Instead of ``"x"`` and ``"y"`` a loop may have a list
@@ -29,21 +30,24 @@ def formula_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
     overrules the file's.
     """
     try:
-        content = json.loads(text, parse_int=float)  # as integers, long ones would not convert
+        content = json.loads(
+            source.text(), parse_int=float
+        )  # as integers, long ones would not convert
     except (ValueError, RecursionError) as error:
         raise InputError(f"expected formulas as JSON, got something else: {error}") from error
     if not isinstance(content, dict):
         raise InputError(
             f'expected a JSON object such as {{"x": "cos(t)", "y": "sin(t)"}}, got {_kind(content)}'
         )
+    fill = options.fill
     rule = fill if fill is not None else _text(content, "fill", "nonzero")
-    name = _text(content, "name", stem)
+    name = _text(content, "name", source.stem)
     if "loops" not in content:
         loops = [_loop(content, _WHOLE)]
     else:
         _check_keys(content, ("loops", *_WHOLE))
         loops = _several(content, "loops", _loop)
-    return Shape.from_pieces(loops, fill=rule, close=close, name=name, once=fill is None)
+    return Shape.from_pieces(loops, fill=rule, close=options.close, name=name, once=fill is None)
 
 
 def _several(

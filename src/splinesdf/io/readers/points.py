@@ -8,22 +8,23 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import polygon
 
 
-def points_shape(text: str, stem: str, fill: str | None, close: bool) -> Shape:
+def points_shape(source: Source, options: Options) -> Shape:
     """Closed polygons through the points; a blank line begins the next one.
 
     A polygon's last point is always joined to its first, whatever ``close`` says.
     """
     loops = []
-    for line, points in read_blocks(text, finite=True):
+    for line, points in read_blocks(source.text(), finite=True):
         try:
             loops.append(polygon(points))
         except InputError as error:
             raise InputError(f"points from line {line} on: {error}") from error
-    return Shape.from_pieces(loops, fill=fill, close=close, name=stem)
+    return Shape.from_pieces(loops, fill=options.fill, close=options.close, name=source.stem)
 
 
 def read_blocks(text: str, *, finite: bool) -> list[tuple[int, Floats]]:

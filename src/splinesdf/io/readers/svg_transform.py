@@ -14,6 +14,9 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.shapes.sources.svg_path import parse_numbers
 
 _TRANSFORM = re.compile(r"[\s,]*([A-Za-z]+)\s*\(([^()]*)\)")
+# Units that CSS has and attributes do not, and what angles are in degrees.
+_UNIT = re.compile(r"(?<=[0-9.])(px|deg|grad|rad|turn)\b")
+_DEGREES = {"grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0}
 
 
 class Matrix(NamedTuple):
@@ -42,15 +45,32 @@ def parse_transform(text: str) -> Matrix:
                 f"expected a list of transforms such as 'translate(1 2) rotate(30)', "
                 f"got {rest[position : position + 30]!r}"
             )
-        matrix = product(matrix, _single(match[1], parse_numbers(match[2])))
+        matrix = product(matrix, _single(match[1], _numbers(match[2])))
         position = match.end()
     return matrix
+
+
+def _numbers(text: str) -> list[float]:
+    """Numbers as attributes or CSS write them: without a unit, in px or as an angle."""
+    units = [unit for unit in _UNIT.findall(text) if unit in _DEGREES]
+    numbers = parse_numbers(_UNIT.sub("", text))
+    return (
+        [n * _DEGREES[unit] for n, unit in zip(numbers, units, strict=True)] if units else numbers
+    )
 
 
 def _single(name: str, n: list[float]) -> Matrix:
     match name, len(n):
         case "matrix", 6:
             return Matrix(*n)
+        case "translateX", 1:
+            return Matrix(e=n[0])
+        case "translateY", 1:
+            return Matrix(f=n[0])
+        case "scaleX", 1:
+            return Matrix(a=n[0])
+        case "scaleY", 1:
+            return Matrix(d=n[0])
         case "translate", 1 | 2:
             return Matrix(e=n[0], f=n[1] if len(n) == 2 else 0.0)
         case "scale", 1 | 2:
@@ -80,6 +100,17 @@ def product(outer: Matrix, inner: Matrix) -> Matrix:
         b * inner.c + d * inner.d,
         a * inner.e + c * inner.f + e,
         b * inner.e + d * inner.f + f,
+    )
+
+
+def inverse(matrix: Matrix) -> Matrix | None:
+    """The inverse map; None if it has none."""
+    a, b, c, d, e, f = matrix
+    det = a * d - b * c
+    if det == 0.0 or not math.isfinite(det):
+        return None
+    return Matrix(
+        d / det, -b / det, -c / det, a / det, (c * f - d * e) / det, (b * e - a * f) / det
     )
 
 

@@ -6,23 +6,28 @@ import math
 import re
 from xml.etree import ElementTree
 
+from splinesdf.io.readers.svg_lengths import INCH, MILLIMETERS, PX
 from splinesdf.shapes.sources.svg_path import parse_numbers
 
-# Millimeters, by the CSS definitions: a px is 1/96 inch, a point 1/72, a pica 12 points.
-_INCH = 25.4
-_MILLIMETERS = {
-    "mm": 1.0,
-    "cm": 10.0,
-    "q": 0.25,
-    "in": _INCH,
-    "pt": _INCH / 72.0,
-    "pc": _INCH / 6.0,
-}
-_PX = _INCH / 96.0
 _SIZE = re.compile(r"\s*([^\s%a-z]+(?:e[-+]?\d+)?)\s*(mm|cm|q|in|pt|pc)\s*", re.IGNORECASE)
 # Factors that differ by this share are one: it is what the six printed digits of a size leave.
 # Larger: a drawing that is off by a hair of every length is not told; smaller: "209.99999mm" is.
 _PRINTED = 1e-6
+
+
+def unit_length(root: ElementTree.Element) -> float | None:
+    """How many millimeters one unit is; None if the document does not say, or stretches it."""
+    sizes = [_size(root, "width"), _size(root, "height")]
+    if sizes == [None, None]:
+        return None
+    view = _view_box(root)
+    if view is None:
+        return PX
+    found = [size[1] / units for size, units in zip(sizes, view, strict=True) if size is not None]
+    aspect = root.get("preserveAspectRatio", "").split()
+    if "none" in aspect and max(found) > (1.0 + _PRINTED) * min(found):
+        return None
+    return max(found) if "slice" in aspect else min(found)
 
 
 def unit_note(root: ElementTree.Element) -> str | None:
@@ -37,7 +42,7 @@ def unit_note(root: ElementTree.Element) -> str | None:
     view = _view_box(root)
     if view is None:
         size = next(size for size in sizes if size is not None)
-        said, factor = f"{size[0]} without a viewBox", _PX
+        said, factor = f"{size[0]} without a viewBox", PX
         inches = size[2]
     else:
         found = [
@@ -54,7 +59,7 @@ def unit_note(root: ElementTree.Element) -> str | None:
                 f"the drawing says {found[0][1]} across and {found[1][1]} down, which stretches "
                 "it; nothing is converted, give the factors to your CAM program"
             )
-    name, length = ("inch", factor / _INCH) if inches else ("mm", factor)
+    name, length = ("inch", factor / INCH) if inches else ("mm", factor)
     if abs(length - 1.0) <= _PRINTED:
         return None
     return (
@@ -73,7 +78,7 @@ def _size(root: ElementTree.Element, key: str) -> tuple[str, float, bool] | None
     except ValueError:  # also not just one number
         return None
     unit = match[2].lower()
-    millimeters = value * _MILLIMETERS[unit]
+    millimeters = value * MILLIMETERS[unit]
     if not 0.0 < millimeters < math.inf:
         return None
     return f"{value:.6g}{unit}", millimeters, unit == "in"

@@ -41,7 +41,8 @@ def svg_text(contours: Sequence[Contour], options: Options) -> str:
     margin = _MARGIN * size
     view = [xmin - margin, ymin - margin, xmax - xmin + 2 * margin, ymax - ymin + 2 * margin]
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_numbers(view)}">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_numbers(view)}" '
+        'data-stroke="centre">',  # so that `read` takes the strokes for closed lines
         f'<g fill="none" stroke-width="{size / 400.0:.6g}" stroke-linejoin="round">',
     ]
     for distance in sorted({contour.distance for contour in drawn}):

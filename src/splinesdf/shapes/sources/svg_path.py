@@ -71,7 +71,25 @@ def parse_path(d: str) -> list[list[Floats]]:
     InputError
         With the place of the first character that does not fit.
     """
+    subpaths, error = parse_until(d)
+    if error is not None:
+        raise error
+    return subpaths
+
+
+def parse_until(d: str) -> tuple[list[list[Floats]], InputError | None]:
+    """The subpaths up to the first error in path data, as SVG draws them, and the error."""
     subpaths: list[list[Floats]] = [[]]
+    error = None
+    try:
+        _draw(d, subpaths)
+    except InputError as first:
+        error = first
+    return [pieces for pieces in subpaths if pieces], error
+
+
+def _draw(d: str, subpaths: list[list[Floats]]) -> None:
+    """Draw path data into subpaths, the last one of which is being drawn."""
     here = start = handle = 0j
     previous = ""
     for letter, values, at in _commands(d):
@@ -103,7 +121,6 @@ def parse_path(d: str) -> list[list[Floats]]:
             subpaths[-1].append(_piece(here, *points))
             handle, here = [here, *points][-2], points[-1]
         previous = command
-    return [pieces for pieces in subpaths if pieces]
 
 
 def parse_numbers(text: str) -> list[float]:

@@ -1,0 +1,42 @@
+"""Are sets of SVG drawings read as a renderer fills them? Each file against resvg's picture.
+
+    python -m benchmarks.drawings FOLDER ... [--most 300] [--across 512 1024]
+
+Of each folder files are drawn evenly. Printed are those that are not right, by name and reason, and
+how many of each folder are. Strokes fill nothing here; a drawing of strokes only is right if it is
+refused with the option that reads them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+from tests.drawings import judged
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("folders", nargs="+", type=Path)
+    parser.add_argument("--most", type=int, default=300, help="files of each folder")
+    parser.add_argument("--across", type=int, nargs="+", default=[512])
+    arguments = parser.parse_args()
+    for folder in arguments.folders:
+        files = sorted(folder.rglob("*.svg"))
+        files = files[:: max(1, len(files) // arguments.most)][: arguments.most]
+        right, slow = 0, []
+        for file in files:
+            began = time.process_time()
+            found = [judged(file, across) for across in arguments.across]
+            seconds = time.process_time() - began
+            if seconds > 10.0:
+                slow.append(f"{file.name} {seconds:.0f} s")
+            right += not any(found)
+            if any(found):
+                print(f"{file.name}: {next(filter(None, found))}", flush=True)
+        print(f"{folder}: {right} of {len(files)} right; slow: {', '.join(slow) or 'none'}")
+
+
+if __name__ == "__main__":
+    main()

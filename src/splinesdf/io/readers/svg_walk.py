@@ -1,0 +1,323 @@
+"""The elements that an SVG document draws, each with its outline, paint and clips.
+
+    root ──stack──> element: style, transform, viewport, clip ──> children, or an outline
+                       ^                                              │
+                       └──────── use: the element it refers to ───────┘
+
+The stack is explicit because documents may be nested deeper than Python's calls.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from xml.etree import ElementTree
+
+import numpy as np
+
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.svg_clip import Clip, window
+from splinesdf.io.readers.svg_document import tag_of
+from splinesdf.io.readers.svg_lengths import DEFAULT_VIEW, View, fitted, font_size, length, view_box
+from splinesdf.io.readers.svg_outlines import OUTLINES, Outline, outline
+from splinesdf.io.readers.svg_style import INHERITED, Styles, is_painted, share
+from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
+
+_GROUPS = {"svg", "g", "a", "switch", "symbol", "use"}
+# What is in these is drawn only where something refers to it, or never.
+NO_DRAWING = frozenset(
+    ("clipPath", "defs", "desc", "filter", "linearGradient", "marker", "mask", "metadata",
+     "pattern", "radialGradient", "script", "style", "symbol", "title", "view")
+)  # fmt: skip
+# Elements that are drawn, those that are referred to as often as they are. More: a few lines of
+# ``use`` in ``use`` take all time and memory; fewer: large drawings are refused.
+_MOST_DRAWN = 1_000_000
+_XLINK = "{http://www.w3.org/1999/xlink}href"
+
+
+@dataclass(frozen=True)
+class Context:
+    """What an element hands down to its children."""
+
+    matrix: Matrix = IDENTITY
+    style: dict[str, str] = field(default_factory=dict)
+    view: View = DEFAULT_VIEW
+    clips: tuple[Clip, ...] = ()
+    # The elements that are referred to around this one: none may refer to itself.
+    uses: tuple[ElementTree.Element, ...] = ()
+
+    @property
+    def filled(self) -> bool:
+        """Whether a fill is seen."""
+        return is_painted(self.style.get("fill", "black"), self.style.get("fill-opacity", "1"))
+
+    @property
+    def stroked(self) -> bool:
+        """Whether a stroke is seen."""
+        style = self.style
+        if not is_painted(style.get("stroke", "none"), style.get("stroke-opacity", "1")):
+            return False
+        width = style.get("stroke-width", "1")
+        return share(width.removesuffix("px")) > 0.0 if not width.endswith("%") else True
+
+    @property
+    def rule(self) -> str | None:
+        """The fill rule, if one is given."""
+        found = self.style.get("fill-rule")
+        return found if found in ("nonzero", "evenodd") else None
+
+    @property
+    def visible(self) -> bool:
+        """Whether it is not hidden."""
+        return self.style.get("visibility", "visible") not in ("hidden", "collapse")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One element's subpaths in the document's coordinates, and how it is painted."""
+
+    tag: str
+    loops: list[list[Floats]]
+    context: Context
+    label: str
+
+
+@dataclass(frozen=True)
+class Found:
+    """What is said of a document beside what it draws."""
+
+    left_out: Counter[str] = field(default_factory=Counter)
+    mended: list[str] = field(default_factory=list)  # errors that SVG itself passes over
+
+
+# The document, an element, its own properties and its context in; its clips and masks out.
+ClipsOf = Callable[["Document", ElementTree.Element, dict[str, str], Context], tuple[Clip, ...]]
+
+
+class Document:
+    """A document: its elements by id, its style sheets, and what is found on the way."""
+
+    def __init__(
+        self, root: ElementTree.Element, ignore: frozenset[str], clips_of: ClipsOf
+    ) -> None:
+        self.root, self.ignore, self.clips_of, self.found = root, ignore, clips_of, Found()
+        self.styles = Styles(root)
+        self.by_id: dict[str, ElementTree.Element] = {}
+        for element in root.iter():
+            if name := element.get("id"):
+                self.by_id.setdefault(name, element)
+
+    def target(self, element: ElementTree.Element) -> ElementTree.Element | None:
+        """The element that another one refers to."""
+        name = element.get("href", element.get(_XLINK, "")).strip()
+        return self.by_id.get(name[1:]) if name.startswith("#") else None
+
+    def referred(self, value: str) -> ElementTree.Element | None:
+        """The element that a value such as ``url(#a)`` refers to."""
+        name = value.strip().removeprefix("url(").rstrip(")").strip().strip("\"'")
+        return self.by_id.get(name[1:]) if name.startswith("#") else None
+
+    def outlines(self) -> Iterator[Drawn]:
+        """The elements that draw an outline, in the document's order."""
+        yield from walk(self, self.root, _root_context(self.root))
+
+
+def walk(document: Document, start: ElementTree.Element, outer: Context) -> Iterator[Drawn]:
+    """What an element and its children draw, in order."""
+    stack = [(start, outer)]
+    count = 0
+    while stack:
+        element, around = stack.pop()
+        tag = tag_of(element)
+        referred = bool(around.uses) and around.uses[-1] is element
+        if tag is None or (tag in NO_DRAWING and not referred and element is not start):
+            continue
+        count += 1
+        if count > _MOST_DRAWN:
+            raise InputError(f"expected at most {_MOST_DRAWN:,} elements drawn, got more")
+        with where(element, tag):
+            own = document.styles.of(element)
+            if own.get("display", "").lower() == "none" or share(own.get("opacity", "1")) == 0.0:
+                if tag in _GROUPS or tag in OUTLINES:
+                    document.found.left_out[f"hidden {tag}"] += 1
+                continue
+            context = inside(element, own, around)
+            clips = document.clips_of(document, element, own, context)
+            if clips:
+                context = replace(context, clips=context.clips + clips)
+            if tag in _GROUPS:
+                stack.extend(reversed(_children(document, element, tag, context, around)))
+            elif not context.visible:
+                document.found.left_out[f"hidden {tag[:40]}"] += 1
+            elif tag not in OUTLINES:
+                document.found.left_out[tag[:40]] += 1
+            else:
+                drawn = _drawn(document, element, tag, context)
+                if drawn is not None:
+                    yield drawn
+
+
+def _children(
+    document: Document, element: ElementTree.Element, tag: str, context: Context, outer: Context
+) -> list[tuple[ElementTree.Element, Context]]:
+    if tag == "switch":
+        chosen = next((child for child in element if _passes(child)), None)
+        return [] if chosen is None else [(chosen, context)]
+    if tag == "use":
+        target = document.target(element)
+        if target is None:
+            document.found.left_out["use of nothing in the file"] += 1
+            return []
+        if any(target is one for one in context.uses) or target is element:
+            document.found.left_out["use of itself"] += 1
+            return []
+        shift = Matrix(
+            e=length(element.get("x", "0"), "x", context.view),
+            f=length(element.get("y", "0"), "y", context.view),
+        )
+        moved = replace(
+            context, matrix=product(context.matrix, shift), uses=(*context.uses, target)
+        )
+        if tag_of(target) in ("symbol", "svg"):
+            size = {key: value for key in ("width", "height") if (value := element.get(key))}
+            moved = _in_view(target, moved, size)
+            own = document.styles.of(target)
+            moved = inside(target, own, moved)
+            return [(child, moved) for child in target]
+        return [(target, moved)]
+    if tag == "svg" and element is not document.root:
+        shift = Matrix(
+            e=length(element.get("x", "0"), "x", outer.view),
+            f=length(element.get("y", "0"), "y", outer.view),
+        )
+        context = replace(context, matrix=product(context.matrix, shift))
+        context = _in_view(element, context, {})
+    return [(child, context) for child in element]
+
+
+def _in_view(element: ElementTree.Element, context: Context, size: dict[str, str]) -> Context:
+    """The context in the viewport that an ``svg`` or a ``symbol`` opens at the origin."""
+    width, height = (
+        length(size.get(key, element.get(key, "100%")).replace("auto", "100%"), key, context.view)
+        for key in ("width", "height")
+    )
+    box = view_box(element.get("viewBox", ""))
+    if width <= 0.0 or height <= 0.0:
+        return replace(context, clips=(*context.clips, Clip([])))
+    overflow = element.get("overflow", "hidden")
+    clips = context.clips
+    if overflow not in ("visible", "auto"):
+        clips = (*clips, window(context.matrix, width, height))
+    view = context.view._replace(width=width, height=height)
+    matrix = context.matrix
+    if box is not None:
+        how = element.get("preserveAspectRatio", "")
+        matrix = product(matrix, fitted(box, width, height, how))
+        view = view._replace(width=box[2], height=box[3])
+    return replace(context, matrix=matrix, view=view, clips=clips)
+
+
+def _passes(element: ElementTree.Element) -> bool:
+    """Whether a child of ``switch`` may be chosen: in English, and with no extensions."""
+    if tag_of(element) is None:
+        return False
+    languages = element.get("systemLanguage")
+    if languages is not None:
+        known = [word.strip().lower() for word in languages.split(",")]
+        if not any(word == "en" or word.startswith("en-") for word in known):
+            return False
+    return not element.get("requiredExtensions", "").strip()
+
+
+def _root_context(root: ElementTree.Element) -> Context:
+    box = view_box(root.get("viewBox", ""))
+    if box is not None:
+        return Context(view=View(box[2], box[3]))
+    sides = []
+    for key in ("width", "height"):
+        try:
+            sides.append(length(root.get(key, "100"), key, View()))
+        except InputError:
+            sides.append(100.0)
+    return Context(view=View(*sides))
+
+
+def inside(element: ElementTree.Element, own: dict[str, str], outer: Context) -> Context:
+    """The context of an element: what it inherits, its own style, font and transform."""
+    changed = {
+        key: value.lower() if "url" not in value else value
+        for key, value in own.items()
+        if key in INHERITED
+    }
+    style, view = outer.style, outer.view
+    if changed:
+        style = {**style, **changed}
+    if "font-size" in changed:
+        with suppress(InputError):  # a size that CSS does not know is none
+            view = view._replace(font=font_size(changed["font-size"], view))
+    matrix = outer.matrix
+    if text := own.get("transform"):
+        step = parse_transform(text)
+        if origin := own.get("transform-origin"):
+            x, y = _origin(origin, view)
+            step = product(product(Matrix(e=x, f=y), step), Matrix(e=-x, f=-y))
+        matrix = product(matrix, step)
+    return replace(outer, matrix=matrix, style=style, view=view)
+
+
+def _origin(text: str, view: View) -> tuple[float, float]:
+    words = {"left": "0%", "right": "100%", "top": "0%", "bottom": "100%", "center": "50%"}
+    parts = text.lower().split()[:2]
+    if len(parts) == 1:
+        parts = ["center", parts[0]] if parts[0] in ("top", "bottom") else [parts[0], "center"]
+    elif parts[0] in ("top", "bottom") or parts[1] in ("left", "right"):
+        parts.reverse()
+    x, y = (words.get(part, part) for part in parts)
+    return length(x, "x", view), length(y, "y", view)
+
+
+def _drawn(
+    document: Document, element: ElementTree.Element, tag: str, context: Context
+) -> Drawn | None:
+    found, label = document.found, label_of(element, tag)
+    try:
+        shape = outline(element, tag, context.view)
+    except InputError as error:
+        found.mended.append(f"left out, as it has an error: {label}: {error}")
+        return None
+    if shape.error:
+        found.mended.append(f"drawn up to an error: {label}: {shape.error}")
+    loops = _mapped(shape, context.matrix)
+    if not loops:
+        if not shape.error:
+            found.left_out[f"{tag} without area"] += 1
+        return None
+    return Drawn(tag, loops, context, label)
+
+
+def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:
+    a, b, c, d, _, _ = matrix
+    if a * d == b * c:
+        return []
+    loops = [mapped(loop, matrix) for loop in shape.loops]
+    if not all(np.isfinite(piece).all() for loop in loops for piece in loop):
+        raise InputError("expected finite coordinates, got NaN or infinity")
+    return loops
+
+
+@contextmanager
+def where(element: ElementTree.Element, tag: str) -> Iterator[None]:
+    """The element's name in front of every error."""
+    try:
+        yield
+    except InputError as error:
+        raise type(error)(f"{label_of(element, tag)}: {error}") from error
+
+
+def label_of(element: ElementTree.Element, tag: str) -> str:
+    """What messages call an element."""
+    name = element.get("id")
+    return f"<{tag} id={name[:40]!r}>" if name else f"<{tag}>"
