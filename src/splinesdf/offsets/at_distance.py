@@ -1,4 +1,4 @@
-"""The offset at one distance: trimmed parallels, joined to loops, fitted by few arcs."""
+"""The offset at one distance: trimmed parallels, joined to loops, fitted by few conic arcs."""
 
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.offsets.loops import loops_of
 from splinesdf.offsets.runs import runs_of
-from splinesdf.offsets.specks import Loops
-from splinesdf.offsets.tables import Runs
-from splinesdf.offsets.trimmed import Stretches, parallels_at, smooth_turn, trimmed
+from splinesdf.offsets.tables import Loops, RunArcs, Runs
+from splinesdf.offsets.trimmed import parallels_at, selected, smooth_turn, trimmed, whole
 from splinesdf.shapes.shape import Shape
 
 # Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
@@ -38,6 +37,16 @@ class Found(NamedTuple):
     clear: bool  # no two arcs meet but at their ends, and no contour turns back on itself
 
 
+class LoopArcs(NamedTuple):
+    """Conic arcs of loops, one loop after the other."""
+
+    arcs: Floats  # (n, 3, 2) control points
+    weights: Floats  # (n,) of the middle control points
+    first: Ints  # (n_loops + 1,) loop j has the arcs first[j]:first[j + 1]
+    clear: bool  # no two arcs meet but at their ends
+    turns_back: bool  # a loop has a cusp
+
+
 def contours_at(
     shape: Shape, distance: float, tolerance: float, *, shift: float = 0.0
 ) -> Found | None:
@@ -53,59 +62,73 @@ def contours_at(
     # each other: trimming must tell them apart.
     apart = abs(shift) or tolerance
     smooth = smooth_turn(moved, tolerance)
-    stretches = trimmed(shape, moved, apart, smooth) if moved else _whole(shape)
-    loops = loops_of(shape, stretches, moved, tolerance)
+    segments = trimmed(shape, moved, apart, smooth) if moved else whole(shape)
+    loops = loops_of(shape, segments, moved, tolerance)
     if loops is None:
         return None
-    fit = _fit_clear_of_itself(shape, loops, moved, tolerance)
-    if fit is None:
+    if len(loops.first) < 2:
         return Found([], True)
-    arcs, weights, cuts, clear, backward = fit
+    fit = _fit_clear_of_itself(shape, loops, moved, tolerance)
     contours = [
-        Contour(arcs[a:b], weights[a:b], distance=distance, y_down=shape.y_down)
-        for a, b in pairwise(cuts)
+        Contour(fit.arcs[a:b], fit.weights[a:b], distance=distance, y_down=shape.y_down)
+        for a, b in pairwise(fit.first)
     ]
     # Moved, nothing runs back along itself: what turns back are tips, nearly as sharp as cusps.
-    return Found(contours, clear and not (backward and shift == 0.0))
+    return Found(contours, fit.clear and not (fit.turns_back and shift == 0.0))
 
 
-def _whole(shape: Shape) -> Stretches:
-    """The boundary itself: the offset at the distance 0."""
-    order = shape.joints.order
-    return Stretches(
-        np.column_stack([order, np.zeros_like(order)]), np.tile([0.0, 1.0], (len(order), 1))
+def _fit_clear_of_itself(shape: Shape, loops: Loops, distance: float, tolerance: float) -> LoopArcs:
+    """Fit loops by few arcs, and again, closer, the free runs whose arcs meet others."""
+    runs, starts = runs_of(shape, loops, distance, tolerance)
+    allowed = np.full(len(runs.kind), tolerance)
+    fitted = _fitted(shape, runs, distance, allowed)
+    for closer in range(_ROUNDS):
+        found = _without_stubs(fitted, runs.kind, starts, tolerance)
+        first = np.searchsorted(found.owner, starts)
+        following = np.arange(1, len(found.arcs) + 1)
+        following[first[1:] - 1] = first[:-1]
+        meeting = np.unique(found.owner[_meeting(found, following)])
+        # Lines and circles stay as they are however close.
+        again = meeting[runs.kind[meeting] == FREE]
+        if not len(again) or closer == _ROUNDS - 1:
+            break
+        allowed[again] *= _CLOSER
+        fitted = _refitted(shape, runs, distance, allowed, fitted, again)
+    arcs = found.arcs + shape.boundary.origin
+    return LoopArcs(arcs, found.weights, first, not len(meeting), _turns_back(arcs, following))
+
+
+def _refitted(
+    shape: Shape, runs: Runs, distance: float, tolerance: Floats, fitted: RunArcs, again: Ints
+) -> RunArcs:
+    """Fit some runs again, and keep the arcs of all others."""
+    rows = [np.arange(a, b) for a, b in zip(runs.first[again], runs.first[again + 1], strict=True)]
+    some = Runs(
+        selected(runs.segments, np.concatenate(rows)),
+        np.cumsum([0, *map(len, rows)]),
+        runs.kind[again],
+        runs.center[again],
+        runs.sweep[again],
+        runs.closed[again],
+    )
+    new = _fitted(shape, some, distance, tolerance[again])
+    kept = ~np.isin(fitted.owner, again)
+    owner = np.concatenate([fitted.owner[kept], again[new.owner]])
+    _check_count(len(owner), tolerance)
+    order = np.argsort(owner, kind="stable")
+    return RunArcs(
+        np.concatenate([fitted.arcs[kept], new.arcs])[order],
+        np.concatenate([fitted.weights[kept], new.weights])[order],
+        owner[order],
     )
 
 
-def _fit_clear_of_itself(
-    shape: Shape, loops: Loops, distance: float, tolerance: float
-) -> tuple[Floats, Floats, Ints, bool, bool] | None:
-    """Arcs, weights, where each loop's arcs start, whether none meet, whether one turns back."""
-    if len(loops.first) < 2:
-        return None
-    runs, starts = runs_of(shape, loops, distance, tolerance)
-    allowed = np.full(len(runs.kind), tolerance)
-    for _ in range(_ROUNDS):
-        arcs, weights, owner = _fitted(shape, runs, distance, allowed)
-        arcs, weights, owner = _without_stubs(arcs, weights, owner, runs.kind, starts, tolerance)
-        cuts = np.searchsorted(owner, starts)
-        following = np.arange(1, len(arcs) + 1)
-        following[cuts[1:] - 1] = cuts[:-1]
-        meeting = np.unique(owner[_meeting(arcs, weights, following)])
-        if not len(meeting):
-            break
-        allowed[meeting] *= _CLOSER
-    arcs += shape.boundary.origin
-    return arcs, weights, cuts, not len(meeting), _turns_back(arcs, following)
-
-
-def _without_stubs(
-    arcs: Floats, weights: Floats, owner: Ints, kind: Ints, starts: Ints, tolerance: float
-) -> tuple[Floats, Floats, Ints]:
+def _without_stubs(fitted: RunArcs, kind: Ints, starts: Ints, tolerance: float) -> RunArcs:
     """Leave out arcs that are rounding, and let a longer neighbor reach to where they led.
 
     They are what the noise in directions leaves next to ends that stand still.
     """
+    arcs, weights, owner = fitted
     loop = np.searchsorted(starts, owner, side="right") - 1
     first = np.flatnonzero(np.diff(loop, prepend=-1))
     size = np.maximum.reduceat(arcs.max(axis=1), first) - np.minimum.reduceat(
@@ -114,7 +137,7 @@ def _without_stubs(
     extent = np.ptp(arcs, axis=1).max(axis=1)
     stub = extent <= np.minimum(_STUB * size.max(axis=1), _LOOSE * tolerance)[loop]
     if not stub.any():
-        return arcs, weights, owner
+        return fitted
     arcs, kept = arcs.copy(), ~stub
     count = np.bincount(loop)
     for at in np.flatnonzero(stub).tolist():
@@ -128,7 +151,7 @@ def _without_stubs(
             arcs[around[0], 2] = arcs[at, 2]
         else:
             arcs[around[1], 0] = arcs[at, 0]
-    return arcs[kept], weights[kept], owner[kept]
+    return RunArcs(arcs[kept], weights[kept], owner[kept])
 
 
 def _turns_back(arcs: Floats, following: Ints) -> bool:
@@ -138,36 +161,39 @@ def _turns_back(arcs: Floats, following: Ints) -> bool:
     return bool((np.abs(angles(before, after)) > np.pi - CUSP).any())
 
 
-def _fitted(
-    shape: Shape, runs: Runs, distance: float, tolerance: Floats
-) -> tuple[Floats, Floats, Ints]:
-    """Arcs of all runs, relative to the boundary's origin, their weights, and their runs."""
-    from splinesdf.offsets.kernels.conic_fit import (  # Numba loads only when it is used
-        MOST_ARCS,
-        fit_runs,
-    )
+def _fitted(shape: Shape, runs: Runs, distance: float, tolerance: Floats) -> RunArcs:
+    """Fit arcs to all runs, each within its tolerance."""
+    from splinesdf.offsets.kernels.conic_fit import fit_runs  # Numba loads only when it is used
 
     room = 4 * len(runs.kind) + 64
     while True:
         arcs, weights = np.empty((room, 3, 2)), np.empty(room)
         owner = np.empty(room, dtype=np.int64)
-        count = fit_runs(parallels_at(shape, distance), runs, tolerance, arcs, weights, owner)
-        if count > MOST_ARCS:
-            raise InputError(
-                f"expected a tolerance for which {MOST_ARCS:,} arcs are enough, got "
-                f"{tolerance.min():.2g}: raise it"
-            )
+        filled = RunArcs(arcs, weights, owner)
+        count = fit_runs(parallels_at(shape, distance), runs, tolerance, filled)
+        _check_count(count, tolerance)
         if count <= room:
-            return arcs[:count], weights[:count], owner[:count]
+            return RunArcs(arcs[:count], weights[:count], owner[:count])
         room = count
 
 
-def _meeting(arcs: Floats, weights: Floats, following: Ints) -> Ints:
+def _check_count(count: int, tolerance: Floats) -> None:
+    from splinesdf.offsets.kernels.conic_fit import MOST_ARCS
+
+    if count > MOST_ARCS:
+        raise InputError(
+            f"expected a tolerance for which {MOST_ARCS:,} arcs are enough, got "
+            f"{tolerance.min():.2g}: raise it"
+        )
+
+
+def _meeting(fitted: RunArcs, following: Ints) -> Ints:
     """Arcs that meet another one elsewhere than at an end they share."""
     from splinesdf.contours.kernels.meetings import (
         find_meetings,  # Numba loads only when it is used
     )
 
+    arcs, weights, _ = fitted
     order = np.argsort(arcs[:, :, 0].min(axis=1))
     room = 64
     while True:

@@ -1,4 +1,4 @@
-"""Runs: stretches of a loop that one line, one circle or one smooth curve goes through.
+"""Runs: segments of a loop that one line, one circle or one smooth curve goes through.
 
 Lines and circles of the shape have lines and circles as their offsets, and corners have circles;
 these stay what they are. Everything else between two of them, or two corners, is one free run.
@@ -7,21 +7,29 @@ these stay what they are. Everything else between two of them, or two corners, i
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf.arclets.points import angles, off_chord
 from splinesdf.arclets.tables import FREE, ROUND, STRAIGHT
 from splinesdf.ground.arrays import Bools, Floats, Ints
-from splinesdf.offsets.specks import Loops
-from splinesdf.offsets.tables import Runs
-from splinesdf.offsets.trimmed import SMOOTH, parallels
+from splinesdf.offsets.tables import POINT, TANGENT, Loops, Runs
+from splinesdf.offsets.trimmed import SMOOTH, parallels, selected
 from splinesdf.shapes.shape import Shape
 
 # A run is one line or one circle if it is no farther off anywhere, as a share of the tolerance or
 # of the largest coordinate, for rounding. Larger: what is exact is off by as much; smaller: chains
 # of many short pieces come back as many lines and arcs.
 _SHARE, _ROUNDING = 1e-3, 32 * 2.220446049250313e-16
+
+
+class SegmentKinds(NamedTuple):
+    """What each segment of loops is."""
+
+    kind: Ints  # (n,) as in `Kinds`, free where its parallel is neither line nor circle
+    center: Floats  # (n, 2) of a round one
+    points: Floats  # (n, 3, 2) at its start, middle and end
 
 
 def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tuple[Runs, Ints]:
@@ -37,11 +45,10 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     """
     largest = max(abs(value) for value in (*shape.box, distance))
     allowed = max(_SHARE * tolerance, _ROUNDING * largest)
-    kind, center, middle = _kinds(shape, loops, distance, allowed)
+    kind, center, points = _kinds(shape, loops, distance, allowed)
     count = len(kind)
     after = np.arange(1, count + 1)
     after[loops.first[1:] - 1] = loops.first[:-1]
-    points = np.stack([loops.start, middle, loops.end], axis=1)
     same = (kind == kind[after]) & loops.smooth
     same &= (kind != ROUND) | (
         (_off_circle(points, points[after], center[after]) <= allowed)
@@ -55,7 +62,7 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     ends |= _bent(points[order], center[order], kind[order], ends, allowed)
     first = np.concatenate([[0], np.flatnonzero(ends) + 1])
     members = np.repeat(np.arange(len(first) - 1), np.diff(first))
-    kind, center, sweep = kind[order], center[order], _sweeps(shape, loops, order, distance)
+    kind, center, sweep = kind[order], center[order], _sweeps(loops, distance)[order]
     with np.errstate(invalid="ignore"):
         weight = np.abs(sweep)
         total = np.bincount(members, weight)
@@ -67,10 +74,7 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     closed[starts[alone]] = loops.smooth[order[loops.first[alone + 1] - 1]]
     return (
         Runs(
-            loops.elements[order],
-            loops.spans[order],
-            loops.start[order],
-            loops.end[order],
+            selected(loops.segments, order),
             first,
             kind[first[:-1]],
             mean,
@@ -81,26 +85,24 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     )
 
 
-def _kinds(
-    shape: Shape, loops: Loops, distance: float, allowed: float
-) -> tuple[Ints, Floats, Floats]:
-    """Kind, center and middle of every row, free where its parallel is neither line nor circle."""
-    table = shape.kinds
-    arclet, corner = loops.elements.T
+def _kinds(shape: Shape, loops: Loops, distance: float, allowed: float) -> SegmentKinds:
+    """Kinds of all segments: those of their arclets, where their parallels are as well."""
+    table, segments = shape.kinds, loops.segments
+    arclet, corner = segments.elements.T
     bridge, around = arclet < 0, np.isfinite(loops.center[:, 0])
     kind = np.where(corner == 1, ROUND, table.kind[arclet])
     kind = np.where(bridge, np.where(around, ROUND, STRAIGHT), kind)
     center = np.where((corner == 1)[:, None], shape.boundary.end[arclet], table.center[arclet])
     center = np.where(bridge[:, None], loops.center, center)
     own = np.flatnonzero(~bridge)
-    middle = 0.5 * (loops.start + loops.end)
-    middle[own] = parallels(shape, loops.elements[own], loops.spans[own].mean(axis=1), distance)[
-        :, :2
-    ]
+    start, end = segments.start[:, POINT], segments.end[:, POINT]
+    middle = 0.5 * (start + end)
+    at = segments.spans[own].mean(axis=1)
+    middle[own] = parallels(shape, segments.elements[own], at, distance)[:, POINT]
     # What is a line or a circle to rounding need not have a parallel that is, far from it.
-    points = np.stack([loops.start, middle, loops.end], axis=1)
+    points = np.stack([start, middle, end], axis=1)
     off = np.where(kind == ROUND, _off_circle(points[:, 1:2], points, center), off_chord(points))
-    return np.where(~bridge & (off > allowed), FREE, kind), center, middle
+    return SegmentKinds(np.where(~bridge & (off > allowed), FREE, kind), center, points)
 
 
 def _off_circle(some: Floats, points: Floats, center: Floats) -> Floats:
@@ -174,19 +176,16 @@ def _straight_parts(chain: Floats, allowed: float) -> Ints:
     return np.array(result, dtype=np.int64)
 
 
-def _sweeps(shape: Shape, loops: Loops, order: Ints, distance: float) -> Floats:
-    """How far the tangent turns along each row, all less than half a turn."""
-    result = np.zeros(len(order))
-    rows = loops.elements[order]
-    own = np.flatnonzero(rows[:, 0] >= 0)
-    a, b = (
-        parallels(shape, rows[own], loops.spans[order[own], k], distance)[:, 2:4] for k in (0, 1)
-    )
-    result[own] = angles(a, b)
-    bridges = np.flatnonzero(np.isfinite(loops.center[order, 0]))
-    at = order[bridges]
-    result[bridges] = angles(loops.start[at] - loops.center[at], loops.end[at] - loops.center[at])
-    corners = rows[:, 1] == 1
+def _sweeps(loops: Loops, distance: float) -> Floats:
+    """Turn of the tangent along each segment (radians), less than half a turn each: (n,)."""
+    segments, center = loops.segments, loops.center
+    result = np.zeros(len(center))
+    own = np.flatnonzero(segments.elements[:, 0] >= 0)
+    result[own] = angles(segments.start[own, TANGENT], segments.end[own, TANGENT])
+    arcs = np.flatnonzero(np.isfinite(center[:, 0]))
+    start, end = segments.start[arcs, POINT], segments.end[arcs, POINT]
+    result[arcs] = angles(start - center[arcs], end - center[arcs])
+    corners = segments.elements[:, 1] == 1
     # Around the tip of a cusp rounding may take half a turn for one to the other side.
     result[corners] = np.copysign(result[corners], distance)
     return result

@@ -1,23 +1,21 @@
-"""What is left of the parallel curves at a distance, see `splinesdf.offsets.kernels.trim`."""
+"""Segments of parallels that nothing is nearer to, see `splinesdf.offsets.kernels.trim`."""
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf.arclets.joints import CUSP
 from splinesdf.arclets.tables import Joints
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, Ints
-from splinesdf.offsets.tables import Chains, Parallels, Turns, Walls
+from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.offsets.tables import Chains, OffsetSegments, Parallels, Turns, Walls
 from splinesdf.shapes.shape import Shape
 
 # Rounding in a distance, as a multiple of the largest number around: what is not farther than the
 # distance by more counts as nearer, so that walls just twice the distance apart leave nothing
 # between them. Smaller: rounding decides where; larger: what is nearly that close is lost.
 _GRAIN = 64 * 2.220446049250313e-16
-# Stretches shorter than this share of the tolerance are judged by their middles.
+# Segments shorter than this share of the tolerance are judged by their middles.
 _SHORTEST = 1e-3
 # Joints that turn by less (radians) are smooth, and so are those that leave open or doubled less of
 # the offset, along its tangent, than the second share of the tolerance. Larger: tangents jump, and
@@ -26,19 +24,14 @@ SMOOTH, _DOUBLED = 1e-7, 1e-3
 # Tangents of compiled pieces are off by as much (radians). Larger: corners are passed over that
 # matter to distances far beyond the size; smaller: smooth curves are cut at their joints there.
 _NOISE = 1e-12
-# Room for stretches at first.
+# Room for segments at first.
 _ROOM = 64
 
 
-class Stretches(NamedTuple):
-    """Parts of parallels that are the offset, in order along each loop of the shape."""
-
-    elements: Ints  # (n, 2) the arclet, and 1 for the arc around its end, else 0
-    spans: Floats  # (n, 2) the parameters at start and end
-
-
-def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH) -> Stretches:
-    """The stretches of all parallels at a distance that nothing is nearer to.
+def trimmed(
+    shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH
+) -> OffsetSegments:
+    """Trim all parallels at a distance: segments that nothing is nearer to, in order along loops.
 
     Parameters
     ----------
@@ -46,7 +39,7 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
     distance : float
         Not 0.
     tolerance : float
-        Stretches far shorter than it may be missing.
+        Segments far shorter than it may be missing.
     smooth : float
         Joints that turn by less (radians) are none, see `smooth_turn`.
 
@@ -77,8 +70,35 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
                 f"{distance:g}, which takes more: ask for another, or offset loops by themselves"
             )
         if found <= room:
-            return Stretches(elements[:found], spans[:found])
+            return segments_at(shape, elements[:found], spans[:found], distance)
         room = found
+
+
+def whole(shape: Shape) -> OffsetSegments:
+    """The boundary itself: the offset at the distance 0."""
+    order = shape.joints.order
+    elements = np.column_stack([order, np.zeros_like(order)])
+    return segments_at(shape, elements, np.tile([0.0, 1.0], (len(order), 1)), 0.0)
+
+
+def segments_at(shape: Shape, elements: Ints, spans: Floats, distance: float) -> OffsetSegments:
+    """Segments of parallels between parameters (n, 2) of their elements (n, 2)."""
+    start, end = (parallels(shape, elements, at, distance) for at in spans.T)
+    return OffsetSegments(elements, spans, start, end)
+
+
+def selected(segments: OffsetSegments, rows: Ints | Bools) -> OffsetSegments:
+    """Some rows of the table, in the order given."""
+    elements, spans, start, end = segments
+    return OffsetSegments(elements[rows], spans[rows], start[rows], end[rows])
+
+
+def stacked(first: OffsetSegments, second: OffsetSegments) -> OffsetSegments:
+    """The rows of one table, and those of another behind them."""
+    elements, spans, start, end = (
+        np.concatenate(columns) for columns in zip(first, second, strict=True)
+    )
+    return OffsetSegments(elements, spans, start, end)
 
 
 def joints_at(shape: Shape, distance: float) -> Joints:
@@ -99,7 +119,7 @@ def loop_sizes(shape: Shape, distance: float) -> Floats:
 
 
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
-    """Point, tangent of the shape, speed and curvature of parallels, (n, 6)."""
+    """Frames of parallels (n, 6), see `OffsetSegments`, at parameters (n,) of elements (n, 2)."""
     from splinesdf.offsets.kernels.parallels import (
         parallel_points,  # Numba loads only when it is used
     )
