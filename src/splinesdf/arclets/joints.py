@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from splinesdf.arclets.crossings import control_points, degrees
+from splinesdf.arclets.crossings import degrees
 from splinesdf.arclets.points import angles, derivatives_at, points_at, previous_of
 from splinesdf.arclets.tables import Arclets, Joints
+from splinesdf.arclets.tangents import led_on, settled
+from splinesdf.arclets.thresholds import CUSP, CUT
 from splinesdf.arclets.vertices import Vertices
 from splinesdf.ground.arrays import Floats, Ints
 
-# A velocity at an end below the first, as a share of the largest coordinate, and below the second,
-# as a share of what the next derivative is good for, is rounding: the arclet stands still there.
-# Larger: offsets are off by as much; smaller: their normals there are noise.
-_STILL, _STANDS = 1e-12, 1e-3
-# Turns within this of half a turn (radians) are cusps: rounding decides on which side of the
-# arriving branch the leaving one lies, so points of both are compared. Larger: corners that are
-# merely sharp are looked at too, which does no harm.
-CUSP = 1e-3
 # Arclets along the branches of a cusp that are looked at, until they are apart.
 _ARCLETS = 24
 # Steps to the nearest point of the other branch; arclets are nearly straight.
@@ -33,9 +25,6 @@ _DIRECTION = 16 * 2.220446049250313e-16
 # Pieces of a higher degree than this are compiled: they agree with their curve to 4 ulp, and their
 # velocities at the ends to the square of the degree times as much, which is this factor.
 _DRAWN, _COMPILED = 3, 32.0
-# Where one piece of the shape was cut it does not turn; tangents of very short arclets differ by
-# less than this (radians), for rounding. Larger: corners of nearly cusps might be taken for it.
-_CUT = 1e-5
 
 
 def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
@@ -52,11 +41,11 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     first = np.repeat(loops[:-1], sizes)
     place = np.empty((len(order), 3), dtype=np.int64)
     place[order] = np.column_stack([np.arange(len(order)) - first, first, np.repeat(sizes, sizes)])
-    arcs, vectors = _standing(boundary)
-    lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in vectors]
-    _lead_on(boundary.following, vectors, lengths)
+    arcs, velocities = settled(boundary)
+    velocities = led_on(velocities, boundary.following)
+    lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in velocities]
     leaving, arriving = (
-        vector / length[:, None] for vector, length in zip(vectors, lengths, strict=True)
+        vector / length[:, None] for vector, length in zip(velocities, lengths, strict=True)
     )
     turn = angles(arriving, leaving[boundary.following])
     cusps = np.flatnonzero(np.abs(turn) > np.pi - CUSP)
@@ -64,7 +53,7 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     turn[cusps] = np.copysign(turn[cusps], side)
     cut = boundary.interval[:, 1] == boundary.interval[boundary.following, 0]
     cut &= boundary.piece == boundary.piece[boundary.following]
-    cut &= np.abs(turn) < _CUT
+    cut &= np.abs(turn) < CUT
     rounding = _DIRECTION * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
     noise = np.where(degrees(boundary) > _DRAWN, _COMPILED * rounding, rounding)
     next_length = lengths[0][boundary.following]
@@ -85,51 +74,6 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     return Joints(
         order, loops, place, boundary.following, turn, tangents, turning, arcs, vertices.touch
     )
-
-
-def _lead_on(following: Ints, vectors: list[Floats], lengths: list[Floats]) -> None:
-    """Give what rounding has left without extent the direction of what follows it.
-
-    So all of a corner in such a place is where it is reached, and none is lost.
-    """
-    for _ in range(len(following)):  # a row of them takes as many rounds as it is long
-        points = np.flatnonzero((lengths[0] == 0.0) | (lengths[1] == 0.0))
-        if len(points) in (0, len(following)):
-            break
-        after = following[points]
-        vector, length = vectors[0][after], lengths[0][after]
-        for k in (0, 1):
-            vectors[k][points], lengths[k][points] = vector, length
-
-
-def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
-    """Rows that stand still exactly where they do to rounding, and directions at both ends."""
-    arcs = boundary.arcs.copy()
-    degree = degrees(boundary)
-    noise = _STILL * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
-    directions = [boundary.end - boundary.start for _ in range(2)]
-    for d in np.unique(degree[degree > 1]):
-        rows = np.flatnonzero(degree == d)
-        control = control_points(boundary.power[rows, : d + 1])
-        stands = np.zeros(len(rows), dtype=np.bool_)
-        for points, result, sign in (
-            (control, directions[0], 1.0),
-            (control[:, ::-1], directions[1], -1.0),
-        ):
-            step, next_step = (np.abs(points[:, k] - points[:, 0]).max(axis=1) for k in (1, 2))
-            still = (step <= noise) & (step <= _STANDS * next_step)
-            points[still, 1] = points[still, 0]
-            stands |= still
-            # Where the velocity vanishes the next derivative decides, and then the chord.
-            for k in (2, 1):
-                vector = sign * d * (points[:, k] - points[:, 0])
-                known = np.any(vector != 0.0, axis=1)
-                result[rows[known]] = vector[known]
-        for k in range(1, d + 1):
-            arcs[rows[stands], 3 + 2 * k : 5 + 2 * k] = (
-                math.comb(d, k) * np.diff(control[stands], n=k, axis=1)[:, 0]
-            )
-    return arcs, directions
 
 
 def _closed(boundary: Arclets) -> Ints:

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf.arclets.joints import CUSP
 from splinesdf.arclets.points import angles
 from splinesdf.arclets.tables import FREE
+from splinesdf.arclets.thresholds import CUSP
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf.arclets.points import angles
+from splinesdf.arclets.thresholds import OVERLAP
 from splinesdf.distance.exact import signed_distance
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.offsets.tables import POINT, SPEED, TANGENT, OffsetSegments
@@ -26,8 +27,6 @@ _SHALLOW = 1e-5
 # Where a parallel is as far from the boundary as asked but for this share of the size, it was cut
 # for rounding only. Larger: what something is nearer to by as much stays in.
 _ROUNDING = 1e-12
-# Segments that overlap are nearly on one line if they turn by less than this (radians) there.
-_OVERLAP = 1e-3
 # They may cross so far (in the parameter) beyond the end of an arclet, on its continuation.
 _BEYOND = 1e-3
 # What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
@@ -71,7 +70,7 @@ def _drawn_back(
     length = np.hypot(*gap.T)
     arriving, leaving = segments.end[ending, TANGENT], segments.start[starting, TANGENT]
     back = (np.sum(gap * arriving, axis=1) < -0.5 * length) & (length <= _SHALLOW * size)
-    back &= np.abs(angles(arriving, leaving)) <= _OVERLAP
+    back &= np.abs(angles(arriving, leaving)) <= OVERLAP
     if not back.any():
         return segments
     spans, frames = segments.spans.copy(), (segments.start.copy(), segments.end.copy())

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from splinesdf.arclets.joints import CUSP, cycles
+from splinesdf.arclets.joints import cycles
 from splinesdf.arclets.points import angles
+from splinesdf.arclets.thresholds import CUSP, SMOOTH
 from splinesdf.distance.exact import signed_distance
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.offsets.corners import Bridges, Corners, bridged, solved
 from splinesdf.offsets.specks import without_specks
 from splinesdf.offsets.tables import POINT, TANGENT, Loops, OffsetSegments
 from splinesdf.offsets.trimmed import (
-    SMOOTH,
     joints_at,
     loop_sizes,
     parallels,

@@ -13,9 +13,10 @@ import numpy as np
 
 from splinesdf.arclets.points import angles, off_chord
 from splinesdf.arclets.tables import FREE, ROUND, STRAIGHT
+from splinesdf.arclets.thresholds import SMOOTH
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.offsets.tables import POINT, TANGENT, Loops, Runs
-from splinesdf.offsets.trimmed import SMOOTH, parallels, selected
+from splinesdf.offsets.trimmed import parallels, selected
 from splinesdf.shapes.shape import Shape
 
 # A run is one line or one circle if it is no farther off anywhere, as a share of the tolerance or

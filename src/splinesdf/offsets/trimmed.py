@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from splinesdf.arclets.joints import CUSP
 from splinesdf.arclets.tables import Joints
+from splinesdf.arclets.thresholds import SMOOTH, TANGENT_NOISE
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.offsets.tables import Chains, OffsetSegments, Parallels, Turns, Walls
@@ -17,13 +17,10 @@ from splinesdf.shapes.shape import Shape
 _GRAIN = 64 * 2.220446049250313e-16
 # Segments shorter than this share of the tolerance are judged by their middles.
 _SHORTEST = 1e-3
-# Joints that turn by less (radians) are smooth, and so are those that leave open or doubled less of
-# the offset, along its tangent, than the second share of the tolerance. Larger: tangents jump, and
-# chains of many such joints are off; smaller: rounding in tangents makes corners.
-SMOOTH, _DOUBLED = 1e-7, 1e-3
-# Tangents of compiled pieces are off by as much (radians). Larger: corners are passed over that
-# matter to distances far beyond the size; smaller: smooth curves are cut at their joints there.
-_NOISE = 1e-12
+# Joints that turn by less than `SMOOTH` are smooth only if they leave open or doubled less of the
+# offset, along its tangent, than this share of the tolerance. Larger: gaps and overlaps are seen;
+# smaller: far out, rounding in tangents makes corners.
+_DOUBLED = 1e-3
 # Room for segments at first.
 _ROOM = 64
 
@@ -56,7 +53,7 @@ def trimmed(
     count = len(walls.bends)
     bent, reach = np.empty(count, dtype=np.bool_), np.empty((count, 3), dtype=np.int64)
     turns = Turns(joints.order, joints.loops, joints.turn, joints.turning)
-    own_chains(turns, walls.bends, distance, CUSP, bent, reach)
+    own_chains(turns, walls.bends, distance, bent, reach)
     chains = Chains(joints.order, joints.loops, joints.place, bent, reach)
     room = 2 * count + _ROOM
     while True:
@@ -131,7 +128,9 @@ def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floa
 
 def smooth_turn(distance: float, tolerance: float) -> float:
     """By how much a joint may turn (radians) and still count as smooth."""
-    return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), _NOISE)) if distance else SMOOTH
+    if not distance:
+        return SMOOTH
+    return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), TANGENT_NOISE))
 
 
 def parallels_at(shape: Shape, distance: float) -> Parallels:
