@@ -12,25 +12,26 @@ from splinesdf.arclets.thresholds import CUSP, CUT
 from splinesdf.arclets.vertices import Vertices
 from splinesdf.ground.arrays import Floats, Ints
 
-# Arclets along the branches of a cusp that are looked at, until they are apart.
+# Arclets along the branches of a cusp that are looked at, until both branches are apart.
 _ARCLETS = 24
 # Steps to the nearest point of the other branch; arclets are nearly straight.
 _STEPS = 8
-# Branches that are no farther apart than this share of the largest coordinate are so by rounding,
-# or were cut there where they count as touching (64 ulp, see `boundary`).
+# Branches that are no farther apart than this share of the largest coordinate are apart by rounding
+# only, or were cut where they count as touching (64 ulp, see `boundary`).
 _APART = 512 * 2.220446049250313e-16
-# Rounding in a velocity, as a share of the largest coordinate; over its length, in its direction:
-# turns within that are none. Larger: real corners are rounded off over 1e-15 of the size.
+# Rounding in a velocity, as a share of the largest coordinate; divided by the velocity's length it
+# is that of the direction, and turns within that are none. Larger: real corners are rounded off
+# over 1e-15 of the size.
 _DIRECTION = 16 * 2.220446049250313e-16
-# Pieces of a higher degree than this are compiled: they agree with their curve to 4 ulp, and their
-# velocities at the ends to the square of the degree times as much, which is this factor.
+# Pieces of a degree above the first are compiled: they agree with their curve to 4 ulp, and their
+# velocities at the ends to the square of the degree times as much, which is the second.
 _DRAWN, _COMPILED = 3, 32.0
 
 
 def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
-    """Loops, turns and tangents of a boundary, seen from inside or outside where it touches itself.
+    """Find loops, turns and tangents of a boundary, seen from inside or from outside.
 
-    Seen from either side the same arclets make up different loops.
+    Where a boundary touches itself, its arclets make up different loops seen from either side.
     """
     following = boundary.following.copy()
     following[vertices.ends] = vertices.outside if outside else vertices.inside
@@ -60,7 +61,7 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     next_noise = noise[boundary.following]
     none = cut | (np.abs(turn) < noise / lengths[1] + next_noise / next_length)
     turn[none] = 0.0
-    # Both have the tangent of the one that knows it better.
+    # Both arclets get the tangent of the longer velocity, which is more exact.
     later = np.flatnonzero(none & (lengths[1] >= next_length))
     earlier = np.flatnonzero(none & (lengths[1] < next_length))
     leaving[boundary.following[later]] = arriving[later]
@@ -77,7 +78,7 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
 
 
 def _closed(boundary: Arclets) -> Ints:
-    """What follows every arclet, each once, also where contours meet in more than two branches.
+    """Find the arclet that follows each, each once, also where more than two branches meet.
 
     There rounding may leave an end without a start; it gets the nearest start that is left.
     """
@@ -87,7 +88,7 @@ def _closed(boundary: Arclets) -> Ints:
         return following
     gap = np.hypot(*(boundary.start[following] - boundary.end).T)
     gap[following < 0] = np.inf
-    # Of several that lead to one start the nearest keeps it.
+    # Of several ends that lead to one start the nearest keeps it.
     order = np.argsort(-gap, kind="stable")
     taken = np.full(count, -1)
     taken[following[order]] = order
@@ -106,9 +107,9 @@ def _closed(boundary: Arclets) -> Ints:
 
 
 def cycles(following: Ints) -> tuple[Ints, Ints]:
-    """All numbers, cycle after cycle of what follows each, and where each cycle starts.
+    """Order numbers cycle after cycle, each before its follower; and where each cycle starts.
 
-    Mostly, what follows has the next number: the walk jumps only where it has not.
+    Mostly the follower has the next number: the walk jumps only where it has not.
     """
     count = len(following)
     order = np.empty(count, dtype=np.int64)
@@ -145,7 +146,7 @@ def _close_up(turn: Floats, bend: Floats, cusp: int, order: Ints, loops: Ints) -
 
 
 def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
-    """Positive where the tip points outward, negative where inward, 0 if that cannot be told: (n,).
+    """Find where tips of cusps point: positive outward, negative inward, 0 if undecided: (n,).
 
     The inside is on the left of both branches: if the arriving one lies on the left of the leaving
     one, the inside is between them, and the tip points outward.
@@ -158,7 +159,7 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
     for _ in range(_ARCLETS):
         for share in (0.5, 1.0):
             point = points_at(boundary, before, np.full(len(before), 1.0 - share))
-            # The nearest point of the other branch: across from there is where this one lies.
+            # On which side of the nearest point of the other branch this branch lies.
             gap = np.full(len(before), np.inf)
             cross = np.zeros(len(before))
             for other in (previous[after], after, boundary.following[after]):
@@ -167,8 +168,8 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
                 side = ahead[:, 0] * apart[:, 1] - ahead[:, 1] * apart[:, 0]
                 nearer = (length < gap) & (np.abs(side) > 0.5 * length * np.hypot(*ahead.T))
                 gap, cross = np.where(nearer, length, gap), np.where(nearer, side, cross)
-            told = (result == 0.0) & (gap > noise) & np.isfinite(gap)
-            result = np.where(told, cross, result)
+            decided = (result == 0.0) & (gap > noise) & np.isfinite(gap)
+            result = np.where(decided, cross, result)
         if (result != 0.0).all():
             break
         before, after = previous[before], boundary.following[after]
@@ -176,7 +177,7 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
 
 
 def _across(boundary: Arclets, arclet: Ints, points: Floats) -> tuple[Floats, Floats]:
-    """From the nearest point of each arclet to its point, and the velocity there."""
+    """Find vectors from the nearest points of arclets to points (n, 2), and velocities there."""
     at = np.full(len(arclet), 0.5)
     for _ in range(_STEPS):
         ahead, _ = derivatives_at(boundary, arclet, at)

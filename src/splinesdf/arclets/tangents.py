@@ -18,8 +18,8 @@ from splinesdf.arclets.points import angles, previous_of, tangents_at
 from splinesdf.arclets.tables import Arclets
 from splinesdf.ground.arrays import Floats, Ints
 
-# A velocity at an end below the first, as a share of the largest coordinate, and below the second,
-# as a share of what the next derivative is good for, is rounding: the arclet stands still there.
+# A velocity at an end is rounding, and the arclet stands still there, if its control step is below
+# the first share of the largest coordinate and the second of that to the next control point.
 # Larger: offsets are off by as much; smaller: their normals there are noise.
 _STILL, _STANDS = 1e-12, 1e-3
 
@@ -39,21 +39,21 @@ def end_tangents(arclets: Arclets) -> EndTangents:
 
 
 def turns(arclets: Arclets) -> Floats:
-    """By what angle the curve turns to the left where each arclet ends; 0 if it leads nowhere."""
+    """Angles by which the curve turns left where arclets end, 0 if nothing follows: (n,)."""
     leaving, arriving = end_tangents(arclets)
     turn = angles(arriving, leaving[arclets.following])
     return np.where(arclets.following >= 0, turn, 0.0)
 
 
 def turns_at_ends(arclets: Arclets) -> Floats:
-    """By what angle the curve turns to the left at the start and the end of each arclet: (n, 2)."""
+    """Angles by which the curve turns left at the start and the end of each arclet: (n, 2)."""
     turn = turns(arclets)
     previous = previous_of(arclets.following)
     return np.column_stack([np.where(previous >= 0, turn[previous], 0.0), turn])
 
 
 def settled(arclets: Arclets) -> tuple[Floats, EndTangents]:
-    """Rows of arclets that stand still exactly where they do to rounding, and their end tangents.
+    """Let arclets that stand still to rounding stand still exactly, and take tangents there.
 
     Returns
     -------
@@ -90,9 +90,9 @@ def settled(arclets: Arclets) -> tuple[Floats, EndTangents]:
 
 
 def led_on(tangents: EndTangents, following: Ints) -> EndTangents:
-    """Give arclets that rounding has left without extent the direction of what follows them.
+    """Give arclets without extent, which rounding leaves, the direction of their followers.
 
-    So all of a corner in such a place is where it is reached, and none is lost.
+    So all of a corner in such a place is where it is reached, and no part of it is lost.
     """
     vectors = [vector.copy() for vector in tangents]
     for _ in range(len(following)):  # a row of them takes as many rounds as it is long

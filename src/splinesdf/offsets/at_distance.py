@@ -19,22 +19,22 @@ from splinesdf.offsets.tables import Loops, RunArcs, Runs
 from splinesdf.offsets.trimmed import parallels_at, selected, smooth_turn, trimmed, whole
 from splinesdf.shapes.shape import Shape
 
-# Arcs that meet within the tolerance where the exact offset does not are fitted again, to this
-# share of the tolerance and, if need be, to its powers.
+# Runs whose arcs meet others, though the exact offset is clear, are fitted again to this share of
+# the tolerance and, if need be, to its powers; and how many fits there are in all.
 _CLOSER, _ROUNDS = 0.125, 5
-# Arcs nearer to one another than this share of the largest coordinate meet; but arcs that leave a
-# corner side by side are no farther apart, for rounding, up to the second one from it.
+# Arcs nearer to each other than this share of the largest coordinate meet, except up to the second
+# share from a corner, where arcs leave it side by side and rounding brings them as near.
 _APART, _FROM_CORNER = 1e-12, 1e-7
-# Arcs below this share of their loop, and of the tolerance, are rounding. Larger: real ones are
-# lost; smaller: stubs stay.
+# Arcs below this share of their loop, and the second of the tolerance, are stubs that rounding
+# leaves. Larger: real arcs are lost; smaller: stubs stay.
 _STUB, _LOOSE = 1e-11, 0.03
 
 
-class Found(NamedTuple):
-    """The contours at one distance."""
+class Attempt(NamedTuple):
+    """Contours at one distance, and whether they are fit for use."""
 
     contours: list[Contour]
-    clear: bool  # no two arcs meet but at their ends, and no contour turns back on itself
+    clear: bool  # arcs meet at common ends only, and no contour turns back on itself
 
 
 class LoopArcs(NamedTuple):
@@ -43,23 +43,27 @@ class LoopArcs(NamedTuple):
     arcs: Floats  # (n, 3, 2) control points
     weights: Floats  # (n,) of the middle control points
     first: Ints  # (n_loops + 1,) loop j has the arcs first[j]:first[j + 1]
-    clear: bool  # no two arcs meet but at their ends
+    clear: bool  # arcs meet at common ends only
     turns_back: bool  # a loop has a cusp
 
 
 def contours_at(
     shape: Shape, distance: float, tolerance: float, *, shift: float = 0.0
-) -> Found | None:
-    """The contours at a distance, or None if trimming leaves ends that do not fit together.
+) -> Attempt | None:
+    """Trim, join and fit the contours at a distance; None if ends of segments find no start.
 
     Parameters
     ----------
+    distance : float
+        Asked for, as each contour says.
+    tolerance : float
+        Of the arcs: the shift is not part of it.
     shift : float
-        How much farther out they really are; the tolerance is what is left beside it.
+        By how much more than the distance the contours are really off.
     """
     moved = distance + shift
-    # Moved by little, walls that were just twice the distance apart end in two crossings close to
-    # each other: trimming must tell them apart.
+    # After a small shift, walls that were just twice the distance apart end in two crossings close
+    # to each other, which trimming must separate.
     apart = abs(shift) or tolerance
     smooth = smooth_turn(moved, tolerance)
     segments = trimmed(shape, moved, apart, smooth) if moved else whole(shape)
@@ -67,18 +71,18 @@ def contours_at(
     if loops is None:
         return None
     if len(loops.first) < 2:
-        return Found([], True)
+        return Attempt([], True)
     fit = _fit_clear_of_itself(shape, loops, moved, tolerance)
     contours = [
         Contour(fit.arcs[a:b], fit.weights[a:b], distance=distance, y_down=shape.y_down)
         for a, b in pairwise(fit.first)
     ]
-    # Moved, nothing runs back along itself: what turns back are tips, nearly as sharp as cusps.
-    return Found(contours, fit.clear and not (fit.turns_back and shift == 0.0))
+    # After a shift nothing runs back along itself: turns back are tips, nearly as sharp as cusps.
+    return Attempt(contours, fit.clear and not (fit.turns_back and shift == 0.0))
 
 
 def _fit_clear_of_itself(shape: Shape, loops: Loops, distance: float, tolerance: float) -> LoopArcs:
-    """Fit loops by few arcs, and again, closer, the free runs whose arcs meet others."""
+    """Fit few arcs to loops, then again, closer, to free runs whose arcs meet others."""
     runs, starts = runs_of(shape, loops, distance, tolerance)
     allowed = np.full(len(runs.kind), tolerance)
     fitted = _fitted(shape, runs, distance, allowed)
@@ -88,7 +92,7 @@ def _fit_clear_of_itself(shape: Shape, loops: Loops, distance: float, tolerance:
         following = np.arange(1, len(found.arcs) + 1)
         following[first[1:] - 1] = first[:-1]
         meeting = np.unique(found.owner[_meeting(found, following)])
-        # Lines and circles stay as they are however close.
+        # Lines and circles do not depend on the tolerance.
         again = meeting[runs.kind[meeting] == FREE]
         if not len(again) or closer == _ROUNDS - 1:
             break
@@ -124,9 +128,9 @@ def _refitted(
 
 
 def _without_stubs(fitted: RunArcs, kind: Ints, starts: Ints, tolerance: float) -> RunArcs:
-    """Leave out arcs that are rounding, and let a longer neighbor reach to where they led.
+    """Leave out stubs, and let a longer free neighbor reach to where they led.
 
-    They are what the noise in directions leaves next to ends that stand still.
+    Noise in directions leaves them next to ends that stand still.
     """
     arcs, weights, owner = fitted
     loop = np.searchsorted(starts, owner, side="right") - 1
@@ -143,7 +147,7 @@ def _without_stubs(fitted: RunArcs, kind: Ints, starts: Ints, tolerance: float) 
     for at in np.flatnonzero(stub).tolist():
         begin, many = int(first[loop[at]]), int(count[loop[at]])
         around = [begin + (at - begin + step) % many for step in (-1, 1)]
-        # A neighbor that is free need not stay what it is.
+        # A line or a circle would not stay what it is.
         bends = [not stub[k] and kind[owner[k]] == FREE for k in around]
         if not any(bends):
             kept[at] = True
@@ -155,7 +159,7 @@ def _without_stubs(fitted: RunArcs, kind: Ints, starts: Ints, tolerance: float) 
 
 
 def _turns_back(arcs: Floats, following: Ints) -> bool:
-    """Whether a contour has a cusp: where the skeleton runs along the level, to rounding."""
+    """Whether a contour has a cusp, as where the skeleton runs along the level, to rounding."""
     before = arcs[:, 2] - arcs[:, 1]
     after = arcs[following, 1] - arcs[following, 0]
     return bool((np.abs(angles(before, after)) > np.pi - CUSP).any())
@@ -178,6 +182,7 @@ def _fitted(shape: Shape, runs: Runs, distance: float, tolerance: Floats) -> Run
 
 
 def _check_count(count: int, tolerance: Floats) -> None:
+    """Refuse tolerances that take more arcs than anybody has a use for."""
     from splinesdf.offsets.kernels.conic_fit import MOST_ARCS
 
     if count > MOST_ARCS:
@@ -188,7 +193,7 @@ def _check_count(count: int, tolerance: Floats) -> None:
 
 
 def _meeting(fitted: RunArcs, following: Ints) -> Ints:
-    """Arcs that meet another one elsewhere than at an end they share."""
+    """Find arcs that meet other arcs elsewhere than at a common end."""
     from splinesdf.contours.kernels.meetings import (
         find_meetings,  # Numba loads only when it is used
     )

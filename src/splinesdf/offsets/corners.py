@@ -1,7 +1,7 @@
-"""Corners of an offset: where one segment ends and another starts, solved for where they cross.
+"""Corners of an offset, in which two parallels cross: solved by Newton's method.
 
-Trimming leaves both ends at nearly the same point, each to rounding over the sine of the angle
-between the parallels; here they are moved until they meet.
+Trimming leaves the end of a segment and the start of the next at nearly the same point, each to
+rounding over the sine of the angle between the parallels; here both are moved until they meet.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from splinesdf.offsets.tables import POINT, SPEED, TANGENT, OffsetSegments
 from splinesdf.offsets.trimmed import joints_at, parallels
 from splinesdf.shapes.shape import Shape
 
-# Steps of Newton's method from where trimming left two segments to where they cross: one that goes
-# too far, as where they nearly touch, is halved. Fewer: such corners stay where trimming left them.
+# Steps of Newton's method from where trimming left two segments to their crossing. Where parallels
+# nearly touch, steps go too far and are halved. Fewer: such corners stay where trimming left them.
 _STEPS = 24
 # Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size.
 # Smaller: gaps between segments that are nearly on one line stay open, and get bridges.
 _SHALLOW = 1e-5
-# Where a parallel is as far from the boundary as asked but for this share of the size, it was cut
-# for rounding only. Larger: what something is nearer to by as much stays in.
+# A parallel whose distance from the boundary is off by less than this share of the size was cut by
+# rounding only. Larger: points to which the boundary is nearer by as much stay in.
 _ROUNDING = 1e-12
-# They may cross so far (in the parameter) beyond the end of an arclet, on its continuation.
+# Parallels may cross so far (in the parameter) beyond the end of an arclet, on its continuation.
 _BEYOND = 1e-3
-# What is left open, as a share of the tolerance, is closed by moving both ends; more by a bridge.
+# Gaps below this share of the tolerance are closed by moving both ends, wider gaps by bridges.
 _MOVED = 1e-3
 
 
 class Corners(NamedTuple):
-    """Ends of segments, and the starts that they are to meet."""
+    """Ends of segments, and the starts of other segments that they are to meet."""
 
     ending: Ints  # (m,) the segment that ends in the corner
     starting: Ints  # (m,) the segment that starts there, each once
@@ -42,7 +42,7 @@ class Corners(NamedTuple):
 
 
 class Bridges(NamedTuple):
-    """Straight lines and arcs over what is left open in corners."""
+    """Straight lines and circular arcs over gaps in corners."""
 
     after: Ints  # (k,) the segment that ends there
     center: Floats  # (k, 2) of an arc, NaN for a line
@@ -61,7 +61,7 @@ def solved(
 def _drawn_back(
     shape: Shape, segments: OffsetSegments, corners: Corners, distance: float
 ) -> OffsetSegments:
-    """Take back what two segments, nearly on one line, overlap: the quicker one begins later.
+    """Shorten segments that overlap, nearly on one line: the quicker of two begins later.
 
     Next to a cusp parallels turn back so shortly that rounding hides where they cross.
     """
@@ -94,7 +94,7 @@ def _drawn_back(
 def _to_crossings(
     shape: Shape, segments: OffsetSegments, corners: Corners, distance: float
 ) -> OffsetSegments:
-    """Move ends and starts to where both parallels cross, if they do, by Newton's method."""
+    """Move ends and starts to the crossings of their parallels, by Newton's method."""
     ending, starting, _ = corners
     spans = segments.spans
     a, b = spans[ending, 1], spans[starting, 0]
@@ -110,7 +110,7 @@ def _to_crossings(
         new_a, new_b = a + step_a, b + step_b
         usable = (new_a > spans[ending, 0]) & (new_a <= 1.0 + _BEYOND)
         usable &= (new_b < spans[starting, 1]) & (new_b >= -_BEYOND)
-        # Beyond both ends it would be a miter.
+        # A crossing beyond both ends would be a miter.
         usable &= (new_a <= 1.0) | (new_b >= 0.0)
         usable &= (new_a != a) | (new_b != b)
         if not usable.any():
@@ -144,9 +144,9 @@ def _moved(
 def _filled_in(
     shape: Shape, segments: OffsetSegments, corners: Corners, distance: float, smooth: float
 ) -> OffsetSegments:
-    """Let smooth parallels run on where they were cut though nothing is nearer, but for rounding.
+    """Let smooth parallels run on where only rounding has cut them.
 
-    So they are beside a point of the shape in which another branch touches this one.
+    That happens beside a point of the shape in which another branch touches this one.
     """
     ending, starting, size = corners
     elements, spans = segments.elements, segments.spans
@@ -175,7 +175,7 @@ def _filled_in(
 def bridged(
     shape: Shape, segments: OffsetSegments, corners: Corners, distance: float, tolerance: float
 ) -> Bridges | None:
-    """Bridges over what is still open; None if one would leave the tolerance."""
+    """Bridge gaps that are still open; None if a bridge would leave the tolerance."""
     gap = np.hypot(
         *(segments.start[corners.starting, POINT] - segments.end[corners.ending, POINT]).T
     )
@@ -184,7 +184,7 @@ def bridged(
         none = np.empty(0, dtype=np.int64)
         return Bridges(none, np.empty((0, 2)), none.astype(np.bool_))
     end, start = segments.end[corners.ending[wide]], segments.start[corners.starting[wide]]
-    # The points of the shape that both are at the distance from.
+    # The points of the shape whose parallels these are.
     foot, other_foot = (
         at[:, POINT] - distance * np.stack([at[:, 3], -at[:, 2]], axis=-1) for at in (end, start)
     )

@@ -1,7 +1,7 @@
 """Segments of parallels joined to closed loops: end to start, corner by corner.
 
-Where one segment runs on into the next there is nothing to do. The other ends are in the offset's
-own corners, in each of which another segment starts, to rounding.
+Where a segment runs on into the next there is nothing to do. The other ends are in the offset's own
+corners, in each of which another segment starts, to rounding.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from splinesdf.offsets.trimmed import (
 )
 from splinesdf.shapes.shape import Shape
 
-# Ends and starts are matched in rounds, each with a radius so many times the one before, so that
-# near ones find each other first.
+# Ends and starts are matched in rounds, each with so many times the radius of the round before, so
+# that the nearest find each other first.
 _WIDER = 30.0
 # Where boundaries touch, segments on the wrong side may be left that are shorter than the root of
 # rounding, as a share of their own loop's size, not of the drawing's.
@@ -35,8 +35,8 @@ _SHORT = 1e-4
 # Where two parallels cross at an angle of 1e-8, trimming may leave a gap of this share of the size,
 # and of the distance, whose rounding there is. Smaller: far out, ends find no start.
 _SHALLOW = 1e-5
-# Loops that reach no farther than this many times the largest gap in them are none. 1: what is left
-# of a segment to and fro; larger: loops that are nearly as small as a gap are lost.
+# Loops that reach no farther than this many times their largest gap are left out. 1: segments that
+# run to and fro; larger: loops that are nearly as small as a gap are lost.
 _OPEN = 1.5
 
 
@@ -70,23 +70,23 @@ def loops_of(
 
 
 def _run_on(shape: Shape, segments: OffsetSegments, distance: float, smooth: float) -> Ints:
-    """The segment that each one runs on into, -1 where it ends in a corner: (n,)."""
+    """Find the segment that each segment runs on into, -1 where it ends in a corner: (n,)."""
     arclet, corner = segments.elements.T
     spans = segments.spans
     boundary, joints = shape.boundary, joints_at(shape, distance)
     turns = (corner == 0) & (joints.turn[arclet] * distance > smooth * abs(distance))
-    # What comes next: the arc around the end, or the next arclet.
+    # The next element: the arc around the end, or the next arclet.
     wanted = np.where(turns, 2 * arclet + 1, 2 * joints.following[arclet])
     opening = np.full(2 * len(boundary.start), -1)
     fresh = np.flatnonzero(spans[:, 0] == 0.0)
     opening[2 * arclet[fresh] + corner[fresh]] = fresh
-    # In a corner toward the offset the parallels cross, be it too near to their ends for trimming.
+    # In a corner toward the offset parallels cross, if too near to their ends for trimming.
     cross = (corner == 0) & (joints.turn[arclet] * distance < -smooth * abs(distance))
     return np.where((spans[:, 1] == 1.0) & ~cross, opening[wanted], -1)
 
 
 def _led_to_by_none(follows: Ints) -> Bools:
-    """Which segments none runs on into: (n,)."""
+    """Find the segments that no other runs on into: (n,)."""
     result = np.ones(len(follows), dtype=np.bool_)
     result[follows[follows >= 0]] = False
     return result
@@ -95,9 +95,9 @@ def _led_to_by_none(follows: Ints) -> Bools:
 def _without_wrong_sides(
     shape: Shape, segments: OffsetSegments, follows: Ints, distance: float, sizes: Floats
 ) -> tuple[OffsetSegments, Ints]:
-    """Leave out segments on the wrong side, next to what is too thin for its sides to be told.
+    """Leave out segments on the wrong side, next to shapes too thin to have two sides.
 
-    Such are slivers between the branches of a cusp, and short ones where boundaries touch.
+    Such are slivers between the branches of a cusp, and short segments where boundaries touch.
     """
     right = np.ones(len(follows), dtype=np.bool_)
     if (np.abs(joints_at(shape, distance).turn) > np.pi - CUSP).any():
@@ -121,7 +121,7 @@ def _without_wrong_sides(
 
 
 def _matched(ends: Floats, starts: Floats, farthest: float) -> Ints | None:
-    """For each end the start next to it, each used once; None if there is none."""
+    """Match each end to the nearest start, each used once; None if an end finds none."""
     if len(ends) != len(starts):
         return None
     result = np.full(len(ends), -1)
@@ -150,10 +150,10 @@ def _matched(ends: Floats, starts: Floats, farthest: float) -> Ints | None:
 
 
 def _larger_than_their_gaps(segments: OffsetSegments, follows: Ints) -> Bools:
-    """Which segments are in loops that reach farther than what is open in them.
+    """Find the segments of loops that reach farther than their gaps.
 
-    A short segment between two crossings at small angles may be nearer to itself than, for
-    rounding, to its neighbors. Then those are matched to each other, and it is a loop alone.
+    A short segment between two crossings at small angles may, by rounding, be nearer to itself than
+    to its neighbors. Then those are matched to each other, and the segment is a loop by itself.
     """
     if not len(follows):
         return np.ones(0, dtype=np.bool_)
@@ -172,7 +172,7 @@ def _larger_than_their_gaps(segments: OffsetSegments, follows: Ints) -> Bools:
 def _as_loops(segments: OffsetSegments, follows: Ints, bridges: Bridges) -> Loops:
     """Order segments and bridges along their loops, with ends and starts equal to the bit."""
     count, start, end = len(follows), segments.start.copy(), segments.end.copy()
-    # A smooth end is one that runs on: its tangent is that of the next segment.
+    # At a smooth end the tangent is that of the next segment.
     smooth = np.abs(angles(end[:, TANGENT], start[follows, TANGENT])) <= SMOOTH
     joined = np.ones(count, dtype=np.bool_)
     joined[bridges.after] = False

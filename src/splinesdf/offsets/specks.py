@@ -8,13 +8,13 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.offsets.tables import POINT, Loops
 from splinesdf.offsets.trimmed import selected
 
-# A loop that is smaller than this share of the tolerance, or of the boundary's loop, is left out:
-# it may be what rounding leaves next to where parallels cross at a small angle.
+# Loops smaller than this share of the tolerance, or this share of the boundary's loop, are left out:
+# rounding leaves such loops next to crossings of parallels at a small angle.
 _LEAST, _SPECK = 1e-3, 1e-9
 
 
 def without_specks(loops: Loops, sizes: Floats, tolerance: float) -> Loops:
-    """Leave out loops that are smaller both ways than what rounding may leave.
+    """Leave out loops that are smaller, in width and height, than rounding may leave them.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def without_specks(loops: Loops, sizes: Floats, tolerance: float) -> Loops:
     low = np.minimum.reduceat(points, loops.first[:-1])
     high = np.maximum.reduceat(points, loops.first[:-1])
     rows_each = np.diff(loops.first)
-    # One row alone that is a loop is a speck: none turns by a full turn.
+    # A loop of one row is a speck, too: no row turns by a full turn.
     kept = (high - low).max(axis=1) > least
     if kept.all():
         return loops

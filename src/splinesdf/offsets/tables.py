@@ -37,22 +37,22 @@ class Loops(NamedTuple):
 
 
 class Parallels(NamedTuple):
-    """Parallels of arclets at a distance, and arcs around their ends: what their points are of."""
+    """Parallels of arclets at a distance, and arcs around the arclets' ends."""
 
     distance: float  # positive to the right of the boundary, which is outward
-    arcs: Floats  # of `Joints`, as are the others
+    arcs: Floats  # of `Joints`, as are turn and tangents
     turn: Floats
     tangents: Floats
 
 
 class Walls(NamedTuple):
-    """Arclets that may be nearer to parallels than their distance."""
+    """Arclets that parallels are trimmed by, where these are nearer than the distance."""
 
     tree: Floats  # of `Arclets`
     arcs: Floats  # of `Arclets`
     bends: Floats  # rows of `Bends`
     touch: Ints  # of `Joints`
-    grain: float  # what is not farther than the distance by more is nearer
+    grain: float  # distances that exceed that of the parallels by no more count as nearer
 
 
 class Turns(NamedTuple):

@@ -11,9 +11,9 @@ from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.offsets.tables import Chains, OffsetSegments, Parallels, Turns, Walls
 from splinesdf.shapes.shape import Shape
 
-# Rounding in a distance, as a multiple of the largest number around: what is not farther than the
-# distance by more counts as nearer, so that walls just twice the distance apart leave nothing
-# between them. Smaller: rounding decides where; larger: what is nearly that close is lost.
+# Rounding in a distance, as a share of the largest number around. Walls whose distance exceeds that
+# of the parallels by no more count as nearer, so that walls just twice the distance apart leave
+# nothing between them. Smaller: rounding decides there; larger: slots nearly as narrow are lost.
 _GRAIN = 64 * 2.220446049250313e-16
 # Segments shorter than this share of the tolerance are judged by their middles.
 _SHORTEST = 1e-3
@@ -28,7 +28,7 @@ _ROOM = 64
 def trimmed(
     shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH
 ) -> OffsetSegments:
-    """Trim all parallels at a distance: segments that nothing is nearer to, in order along loops.
+    """Trim all parallels at a distance: segments to which nothing is nearer, in order along loops.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def trimmed(
     tolerance : float
         Segments far shorter than it may be missing.
     smooth : float
-        Joints that turn by less (radians) are none, see `smooth_turn`.
+        Joints that turn by less (radians) have no corner, see `smooth_turn`.
 
     Raises
     ------
@@ -72,26 +72,26 @@ def trimmed(
 
 
 def whole(shape: Shape) -> OffsetSegments:
-    """The boundary itself: the offset at the distance 0."""
+    """Take the boundary itself: the offset at the distance 0."""
     order = shape.joints.order
     elements = np.column_stack([order, np.zeros_like(order)])
     return segments_at(shape, elements, np.tile([0.0, 1.0], (len(order), 1)), 0.0)
 
 
 def segments_at(shape: Shape, elements: Ints, spans: Floats, distance: float) -> OffsetSegments:
-    """Segments of parallels between parameters (n, 2) of their elements (n, 2)."""
+    """Make segments of parallels between parameters (n, 2) of their elements (n, 2)."""
     start, end = (parallels(shape, elements, at, distance) for at in spans.T)
     return OffsetSegments(elements, spans, start, end)
 
 
 def selected(segments: OffsetSegments, rows: Ints | Bools) -> OffsetSegments:
-    """Some rows of the table, in the order given."""
+    """Take some rows of the table, in the order given."""
     elements, spans, start, end = segments
     return OffsetSegments(elements[rows], spans[rows], start[rows], end[rows])
 
 
 def stacked(first: OffsetSegments, second: OffsetSegments) -> OffsetSegments:
-    """The rows of one table, and those of another behind them."""
+    """Append the rows of a second table to those of a first."""
     elements, spans, start, end = (
         np.concatenate(columns) for columns in zip(first, second, strict=True)
     )
@@ -99,12 +99,12 @@ def stacked(first: OffsetSegments, second: OffsetSegments) -> OffsetSegments:
 
 
 def joints_at(shape: Shape, distance: float) -> Joints:
-    """How arclets follow one another, seen from the side that an offset is on."""
+    """Take the joints as seen from the side that an offset is on."""
     return shape.joints_outside if distance > 0.0 else shape.joints
 
 
 def loop_sizes(shape: Shape, distance: float) -> Floats:
-    """The larger side of the loop of each arclet: what is small beside it, not in the drawing."""
+    """Measure the larger side of each arclet's loop: (n,)."""
     joints, boundary = joints_at(shape, distance), shape.boundary
     low = np.minimum(boundary.start, boundary.end)[joints.order]
     high = np.maximum(boundary.start, boundary.end)[joints.order]
@@ -116,7 +116,7 @@ def loop_sizes(shape: Shape, distance: float) -> Floats:
 
 
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
-    """Frames of parallels (n, 6), see `OffsetSegments`, at parameters (n,) of elements (n, 2)."""
+    """Evaluate frames, see `OffsetSegments`, at parameters (n,) of elements (n, 2): (n, 6)."""
     from splinesdf.offsets.kernels.parallels import (
         parallel_points,  # Numba loads only when it is used
     )
@@ -127,20 +127,20 @@ def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floa
 
 
 def smooth_turn(distance: float, tolerance: float) -> float:
-    """By how much a joint may turn (radians) and still count as smooth."""
+    """Bound the turn (radians) up to which a joint counts as smooth."""
     if not distance:
         return SMOOTH
     return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), TANGENT_NOISE))
 
 
 def parallels_at(shape: Shape, distance: float) -> Parallels:
-    """What the kernels must know of the parallels at a distance."""
+    """Gather what kernels read of the parallels at a distance."""
     joints = joints_at(shape, distance)
     return Parallels(distance, joints.arcs, joints.turn, joints.tangents)
 
 
 def walls_at(shape: Shape, distance: float) -> Walls:
-    """What they must know of the shape that parallels at a distance are trimmed by."""
+    """Gather what kernels read of the arclets that trim parallels at a distance."""
     boundary = shape.boundary
     size = float(np.abs(boundary.boxes[0]).max()) + abs(distance)
     touch = joints_at(shape, distance).touch
