@@ -1,7 +1,7 @@
 """Thresholds of turns (radians): where joints of arclets go on smoothly, are corners, or cusps.
 
-Sorted by size. A turn below one and above the next is still different things to different
-questions, which is why they are several; equal values that answer one question are one constant.
+Sorted by size. Each answers a question of its own, so that a turn may be a corner to one and none
+to another; values that answer the same question are one constant.
 Not here: `_SMOOTH` of `contours/biarcs` (1e-5, joints of conics, not of arclets; that folder does
 not import this one), and what directions at ends are good for as a share of lengths
 (`arclets/tangents`, `arclets/joints`).
@@ -22,8 +22,8 @@ TANGENT_NOISE = 1e-12
 SMOOTH = 1e-7
 
 # Corners of a chain toward the offset may turn by as much in all, a sum over joints where `SMOOTH`
-# is for one: they enter its disks by 45 units of rounding in |d|, of the 64 that count as nothing,
-# which both changes with if one does. Larger: corners are overlooked; smaller: far out, where
+# is for one joint. So they enter its disks by 45 units of rounding in |d|, of the 64 that count as
+# nothing (`_GRAIN` in `offsets/trimmed`). Larger: corners are overlooked; smaller: far out, where
 # parallels cross at such angles, rounding says where they are cut.
 DENTS = 1e-7
 
@@ -33,10 +33,10 @@ DENTS = 1e-7
 # their sides; smaller: printed curves have infinite curvature at their joints.
 CORNER = 1e-6
 
-# Where one piece was cut it does not turn, but tangents of very short arclets differ by as much,
-# for rounding over their lengths: what is below, within a piece, is no turn at all. Far above
-# `SMOOTH`, as nothing but the piece says so. Larger: corners of pieces with cusps nearly inside
-# might be taken for it; smaller: offsets get corners where a piece was cut.
+# Where one piece was cut it does not turn, but tangents of very short arclets differ by as much, by
+# rounding over their lengths: smaller turns within a piece are none. Far above `SMOOTH`, as these
+# joints are known to be smooth. Larger: cusps nearly inside a piece, which turns there within an
+# arclet's length, lose their corner; smaller: offsets get corners at cuts.
 CUT = 1e-5
 
 # A turn within this of half a turn is a cusp, and so is one whose sine is less: rounding decides on
@@ -51,7 +51,7 @@ CUSP = 1e-3
 OVERLAP = 1e-3
 
 # A corner of the drawing that turns by more is looked at in directions between its normals when a
-# file is measured again (`io/enclosed`). It may be coarse: below, both normals miss what lies
-# between by less than a sample. Larger: parts of an offset about such corners are not seen;
+# file is measured again (`io/enclosed`). It may be coarse: at smaller turns the normals are near
+# enough to all directions between. Larger: parts of an offset about such corners are not seen;
 # smaller: printed curves have a fan at each joint, and that takes time.
 FAN = 1e-2

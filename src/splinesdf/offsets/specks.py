@@ -8,8 +8,8 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.offsets.tables import POINT, Loops
 from splinesdf.offsets.trimmed import selected
 
-# Loops smaller than this share of the tolerance, or this share of the boundary's loop, are left out:
-# rounding leaves such loops next to crossings of parallels at a small angle.
+# Loops smaller than these shares of the tolerance, or of the boundary's loop, are left out, as they
+# are what rounding leaves next to crossings of parallels at a small angle.
 _LEAST, _SPECK = 1e-3, 1e-9
 
 
