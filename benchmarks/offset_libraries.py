@@ -17,8 +17,9 @@ import numpy as np
 
 import splinesdf as ss
 from benchmarks.offset_truth import Answer
-from splinesdf.arclets.points import derivatives_at, points_at, tangents_at, turns
+from splinesdf.arclets.points import derivatives_at, points_at, tangents_at
 from splinesdf.arclets.tables import Arclets
+from splinesdf.arclets.tangents import turns
 from splinesdf.contours.contour import Contour
 
 # Where along an arclet its bend is looked at to choose the number of chords.

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 import splinesdf as ss
-from splinesdf.arclets.points import end_tangents, points_at, tangents_at, turns
+from splinesdf.arclets.points import points_at, tangents_at
+from splinesdf.arclets.tangents import end_tangents, turns
 from splinesdf.contours.contour import Contour, evaluate
 
 # Points of the boundary whose normals are shot. More: finer looks at what an answer lacks, slower;

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.arclets.points import derivatives_at, end_tangents, points_at
+from splinesdf.arclets.points import derivatives_at, points_at
+from splinesdf.arclets.tangents import end_tangents
 from tests.named_shapes import gamma
 from tests.real_shapes import SMOOTH, formula_shape, icons
 

@@ -8,12 +8,13 @@ import shapely
 
 import splinesdf as ss
 from splinesdf.arclets.tables import FREE, ROUND, STRAIGHT
+from splinesdf.arclets.thresholds import SMOOTH
 from splinesdf.contours.contour import Contour, evaluate
 from splinesdf.contours.kernels.meetings import find_meetings
 from splinesdf.contours.nesting import enclosed, nested
 from splinesdf.offsets.loops import _run_on
 from splinesdf.offsets.offset import deviation
-from splinesdf.offsets.trimmed import SMOOTH, parallels, trimmed
+from splinesdf.offsets.trimmed import parallels, trimmed
 from tests.chains import circle
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma

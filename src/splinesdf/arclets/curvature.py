@@ -14,8 +14,9 @@ from functools import cache
 import numpy as np
 
 from splinesdf.arclets.crossings import control_points, degrees
-from splinesdf.arclets.points import end_tangents, previous_of
+from splinesdf.arclets.points import previous_of
 from splinesdf.arclets.tables import Arclets, Bends
+from splinesdf.arclets.tangents import end_tangents
 from splinesdf.ground.arrays import Floats, Ints
 
 # Equal parts of an arclet that are bounded one by one. More: closer ranges where the parameter's

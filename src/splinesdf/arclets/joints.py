@@ -2,46 +2,36 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from splinesdf.arclets.crossings import control_points, degrees
+from splinesdf.arclets.crossings import degrees
 from splinesdf.arclets.points import angles, derivatives_at, points_at, previous_of
 from splinesdf.arclets.tables import Arclets, Joints
+from splinesdf.arclets.tangents import led_on, settled
+from splinesdf.arclets.thresholds import CUSP, CUT
 from splinesdf.arclets.vertices import Vertices
 from splinesdf.ground.arrays import Floats, Ints
 
-# A velocity at an end below the first, as a share of the largest coordinate, and below the second,
-# as a share of what the next derivative is good for, is rounding: the arclet stands still there.
-# Larger: offsets are off by as much; smaller: their normals there are noise.
-_STILL, _STANDS = 1e-12, 1e-3
-# Turns within this of half a turn (radians) are cusps: rounding decides on which side of the
-# arriving branch the leaving one lies, so points of both are compared. Larger: corners that are
-# merely sharp are looked at too, which does no harm.
-CUSP = 1e-3
-# Arclets along the branches of a cusp that are looked at, until they are apart.
+# Arclets along the branches of a cusp that are looked at, until both branches are apart.
 _ARCLETS = 24
 # Steps to the nearest point of the other branch; arclets are nearly straight.
 _STEPS = 8
-# Branches that are no farther apart than this share of the largest coordinate are so by rounding,
-# or were cut there where they count as touching (64 ulp, see `boundary`).
+# Branches that are no farther apart than this share of the largest coordinate are apart by rounding
+# only, or were cut where they count as touching (64 ulp, see `boundary`).
 _APART = 512 * 2.220446049250313e-16
-# Rounding in a velocity, as a share of the largest coordinate; over its length, in its direction:
-# turns within that are none. Larger: real corners are rounded off over 1e-15 of the size.
+# Rounding in a velocity, as a share of the largest coordinate; divided by the velocity's length it
+# is that of the direction, and turns within that are none. Larger: real corners are rounded off
+# over 1e-15 of the size.
 _DIRECTION = 16 * 2.220446049250313e-16
-# Pieces of a higher degree than this are compiled: they agree with their curve to 4 ulp, and their
-# velocities at the ends to the square of the degree times as much, which is this factor.
+# Pieces of a degree above the first are compiled: they agree with their curve to 4 ulp, and their
+# velocities at the ends to the square of the degree times as much, which is the second.
 _DRAWN, _COMPILED = 3, 32.0
-# Where one piece of the shape was cut it does not turn; tangents of very short arclets differ by
-# less than this (radians), for rounding. Larger: corners of nearly cusps might be taken for it.
-_CUT = 1e-5
 
 
 def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
-    """Loops, turns and tangents of a boundary, seen from inside or outside where it touches itself.
+    """Find loops, turns and tangents of a boundary, seen from inside or from outside.
 
-    Seen from either side the same arclets make up different loops.
+    Where a boundary touches itself, its arclets make up different loops seen from either side.
     """
     following = boundary.following.copy()
     following[vertices.ends] = vertices.outside if outside else vertices.inside
@@ -52,11 +42,11 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     first = np.repeat(loops[:-1], sizes)
     place = np.empty((len(order), 3), dtype=np.int64)
     place[order] = np.column_stack([np.arange(len(order)) - first, first, np.repeat(sizes, sizes)])
-    arcs, vectors = _standing(boundary)
-    lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in vectors]
-    _lead_on(boundary.following, vectors, lengths)
+    arcs, velocities = settled(boundary)
+    velocities = led_on(velocities, boundary.following)
+    lengths = [np.hypot(vector[:, 0], vector[:, 1]) for vector in velocities]
     leaving, arriving = (
-        vector / length[:, None] for vector, length in zip(vectors, lengths, strict=True)
+        vector / length[:, None] for vector, length in zip(velocities, lengths, strict=True)
     )
     turn = angles(arriving, leaving[boundary.following])
     cusps = np.flatnonzero(np.abs(turn) > np.pi - CUSP)
@@ -64,14 +54,14 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     turn[cusps] = np.copysign(turn[cusps], side)
     cut = boundary.interval[:, 1] == boundary.interval[boundary.following, 0]
     cut &= boundary.piece == boundary.piece[boundary.following]
-    cut &= np.abs(turn) < _CUT
+    cut &= np.abs(turn) < CUT
     rounding = _DIRECTION * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
     noise = np.where(degrees(boundary) > _DRAWN, _COMPILED * rounding, rounding)
     next_length = lengths[0][boundary.following]
     next_noise = noise[boundary.following]
     none = cut | (np.abs(turn) < noise / lengths[1] + next_noise / next_length)
     turn[none] = 0.0
-    # Both have the tangent of the one that knows it better.
+    # Both arclets get the tangent of the longer velocity, which is more exact.
     later = np.flatnonzero(none & (lengths[1] >= next_length))
     earlier = np.flatnonzero(none & (lengths[1] < next_length))
     leaving[boundary.following[later]] = arriving[later]
@@ -87,53 +77,8 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
     )
 
 
-def _lead_on(following: Ints, vectors: list[Floats], lengths: list[Floats]) -> None:
-    """Give what rounding has left without extent the direction of what follows it.
-
-    So all of a corner in such a place is where it is reached, and none is lost.
-    """
-    for _ in range(len(following)):  # a row of them takes as many rounds as it is long
-        points = np.flatnonzero((lengths[0] == 0.0) | (lengths[1] == 0.0))
-        if len(points) in (0, len(following)):
-            break
-        after = following[points]
-        vector, length = vectors[0][after], lengths[0][after]
-        for k in (0, 1):
-            vectors[k][points], lengths[k][points] = vector, length
-
-
-def _standing(boundary: Arclets) -> tuple[Floats, list[Floats]]:
-    """Rows that stand still exactly where they do to rounding, and directions at both ends."""
-    arcs = boundary.arcs.copy()
-    degree = degrees(boundary)
-    noise = _STILL * float(np.abs(boundary.boxes[0]).max() + np.abs(boundary.origin).max())
-    directions = [boundary.end - boundary.start for _ in range(2)]
-    for d in np.unique(degree[degree > 1]):
-        rows = np.flatnonzero(degree == d)
-        control = control_points(boundary.power[rows, : d + 1])
-        stands = np.zeros(len(rows), dtype=np.bool_)
-        for points, result, sign in (
-            (control, directions[0], 1.0),
-            (control[:, ::-1], directions[1], -1.0),
-        ):
-            step, next_step = (np.abs(points[:, k] - points[:, 0]).max(axis=1) for k in (1, 2))
-            still = (step <= noise) & (step <= _STANDS * next_step)
-            points[still, 1] = points[still, 0]
-            stands |= still
-            # Where the velocity vanishes the next derivative decides, and then the chord.
-            for k in (2, 1):
-                vector = sign * d * (points[:, k] - points[:, 0])
-                known = np.any(vector != 0.0, axis=1)
-                result[rows[known]] = vector[known]
-        for k in range(1, d + 1):
-            arcs[rows[stands], 3 + 2 * k : 5 + 2 * k] = (
-                math.comb(d, k) * np.diff(control[stands], n=k, axis=1)[:, 0]
-            )
-    return arcs, directions
-
-
 def _closed(boundary: Arclets) -> Ints:
-    """What follows every arclet, each once, also where contours meet in more than two branches.
+    """Find the arclet that follows each, each once, also where more than two branches meet.
 
     There rounding may leave an end without a start; it gets the nearest start that is left.
     """
@@ -143,7 +88,7 @@ def _closed(boundary: Arclets) -> Ints:
         return following
     gap = np.hypot(*(boundary.start[following] - boundary.end).T)
     gap[following < 0] = np.inf
-    # Of several that lead to one start the nearest keeps it.
+    # Of several ends that lead to one start the nearest keeps it.
     order = np.argsort(-gap, kind="stable")
     taken = np.full(count, -1)
     taken[following[order]] = order
@@ -162,9 +107,9 @@ def _closed(boundary: Arclets) -> Ints:
 
 
 def cycles(following: Ints) -> tuple[Ints, Ints]:
-    """All numbers, cycle after cycle of what follows each, and where each cycle starts.
+    """Order numbers cycle after cycle, each before its follower; and where each cycle starts.
 
-    Mostly, what follows has the next number: the walk jumps only where it has not.
+    Mostly the follower has the next number: the walk jumps only where it has not.
     """
     count = len(following)
     order = np.empty(count, dtype=np.int64)
@@ -201,7 +146,7 @@ def _close_up(turn: Floats, bend: Floats, cusp: int, order: Ints, loops: Ints) -
 
 
 def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
-    """Positive where the tip points outward, negative where inward, 0 if that cannot be told: (n,).
+    """Find where tips of cusps point: positive outward, negative inward, 0 if undecided: (n,).
 
     The inside is on the left of both branches: if the arriving one lies on the left of the leaving
     one, the inside is between them, and the tip points outward.
@@ -214,7 +159,7 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
     for _ in range(_ARCLETS):
         for share in (0.5, 1.0):
             point = points_at(boundary, before, np.full(len(before), 1.0 - share))
-            # The nearest point of the other branch: across from there is where this one lies.
+            # On which side of the nearest point of the other branch this branch lies.
             gap = np.full(len(before), np.inf)
             cross = np.zeros(len(before))
             for other in (previous[after], after, boundary.following[after]):
@@ -223,8 +168,8 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
                 side = ahead[:, 0] * apart[:, 1] - ahead[:, 1] * apart[:, 0]
                 nearer = (length < gap) & (np.abs(side) > 0.5 * length * np.hypot(*ahead.T))
                 gap, cross = np.where(nearer, length, gap), np.where(nearer, side, cross)
-            told = (result == 0.0) & (gap > noise) & np.isfinite(gap)
-            result = np.where(told, cross, result)
+            decided = (result == 0.0) & (gap > noise) & np.isfinite(gap)
+            result = np.where(decided, cross, result)
         if (result != 0.0).all():
             break
         before, after = previous[before], boundary.following[after]
@@ -232,7 +177,7 @@ def _side_of_cusps(boundary: Arclets, arclet: Ints) -> Floats:
 
 
 def _across(boundary: Arclets, arclet: Ints, points: Floats) -> tuple[Floats, Floats]:
-    """From the nearest point of each arclet to its point, and the velocity there."""
+    """Find vectors from the nearest points of arclets to points (n, 2), and velocities there."""
     at = np.full(len(arclet), 0.5)
     for _ in range(_STEPS):
         ahead, _ = derivatives_at(boundary, arclet, at)

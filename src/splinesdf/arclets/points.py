@@ -1,4 +1,4 @@
-"""Points, directions and bends of arclets, for many parameters at once."""
+"""Points and directions of arclets for many parameters at once, and angles between vectors."""
 
 from __future__ import annotations
 
@@ -32,27 +32,6 @@ def tangents_at(arclets: Arclets, arclet: Ints, t: Floats) -> Floats:
     first, _ = derivatives_at(arclets, arclet, t)
     still = ~np.any(first != 0.0, axis=1)
     return np.where(still[:, None], (arclets.end - arclets.start)[arclet], first)
-
-
-def end_tangents(arclets: Arclets) -> tuple[Floats, Floats]:
-    """Tangents at the start and at the end of every arclet."""
-    every = np.arange(len(arclets.start))
-    at_start = tangents_at(arclets, every, np.zeros(len(every)))
-    return at_start, tangents_at(arclets, every, np.ones(len(every)))
-
-
-def turns(arclets: Arclets) -> Floats:
-    """By what angle the curve turns to the left where each arclet ends; 0 if it leads nowhere."""
-    leaving, arriving = end_tangents(arclets)
-    turn = angles(arriving, leaving[arclets.following])
-    return np.where(arclets.following >= 0, turn, 0.0)
-
-
-def turns_at_ends(arclets: Arclets) -> Floats:
-    """By what angle the curve turns to the left at the start and the end of each arclet: (n, 2)."""
-    turn = turns(arclets)
-    previous = previous_of(arclets.following)
-    return np.column_stack([np.where(previous >= 0, turn[previous], 0.0), turn])
 
 
 def previous_of(following: Ints) -> Ints:

@@ -1,4 +1,4 @@
-"""Points in which a boundary touches itself, and how it goes on there seen from either side.
+"""Vertices in which a boundary touches itself, and how it goes on there, seen from both sides.
 
 Where more than two branches meet, they bound wedges that are inside and outside by turns. Seen from
 inside, a branch that arrives goes on in the other one that bounds its wedge inside; seen from
@@ -24,17 +24,24 @@ _STEPS = 50
 
 
 class Vertices(NamedTuple):
-    """The points in which more than two branches meet."""
+    """Points in which more than two branches meet."""
 
-    # (n, 2) which of them an arclet starts and ends in, -1 for none
-    touch: Ints
-    ends: Ints  # (m,) arclets that end in one, vertex after vertex
-    inside: Ints  # (m,) what follows each of them around the inside
-    outside: Ints  # (m,) and around the outside
+    touch: Ints  # (n, 2) the vertex that each arclet starts and ends in, -1 for none
+    ends: Ints  # (m,) arclets that end in a vertex, vertex after vertex
+    inside: Ints  # (m,) the arclets that follow them around the inside
+    outside: Ints  # (m,) the arclets that follow them around the outside
+
+
+class _Branches(NamedTuple):
+    """Branches that arrive in a vertex, as in `Vertices`."""
+
+    ends: Ints
+    inside: Ints
+    outside: Ints
 
 
 def vertices(boundary: Arclets) -> Vertices:
-    """Find them by their coordinates, which are equal to the bit (see `boundary`)."""
+    """Find vertices by coordinates of ends, which are equal to the bit (see `boundary`)."""
     count = len(boundary.start)
     touch = np.full((count, 2), -1)
     none = np.empty(0, dtype=np.int64)
@@ -62,8 +69,8 @@ def vertices(boundary: Arclets) -> Vertices:
     return Vertices(touch, *(np.concatenate(column) for column in zip(*kept, strict=True)))
 
 
-def _around(boundary: Arclets, ends: Ints, starts: Ints) -> tuple[Ints, Ints, Ints] | None:
-    """The arriving branches, and what follows each on both sides; None if rounding decides."""
+def _around(boundary: Arclets, ends: Ints, starts: Ints) -> _Branches | None:
+    """Find the arclets that follow arriving branches on both sides; None if rounding decides."""
     if len(ends) != len(starts):
         return None
     arclet = np.concatenate([ends, starts])
@@ -76,11 +83,11 @@ def _around(boundary: Arclets, ends: Ints, starts: Ints) -> tuple[Ints, Ints, In
     at = np.flatnonzero(arrives[order])
     around = arclet[order]
     # Counterclockwise of a branch that arrives lies the outside.
-    return around[at], around[at - 1], around[(at + 1) % len(around)]
+    return _Branches(around[at], around[at - 1], around[(at + 1) % len(around)])
 
 
 def _equally_far(boundary: Arclets, arclet: Ints, arrives: np.ndarray, vertex: Floats) -> Floats:
-    """One point of each branch, all at the same distance from the vertex."""
+    """Find a point of each branch, all at the same distance from the vertex: (n, 2)."""
     chord = np.hypot(*(boundary.end[arclet] - boundary.start[arclet]).T)
     radius = _LOOK * chord.min()
     near, far = np.zeros(len(arclet)), np.ones(len(arclet))

@@ -26,10 +26,10 @@ from splinesdf.io.remeasured import measure_file
 from splinesdf.io.writers.options import DIRECTIONS, UNITS
 from splinesdf.offsets.offset import least_tolerance
 
-# How much of the tolerance the offset gets; the file has the rest. DXF without --arcs is exact. In
-# SVG only hyperbolas are not, and cubics follow them with the sixth order. Biarcs, which are of
-# the third, and polylines, of the second, need the room more than the offset's conics, which are
-# of the fifth. More for those: more biarcs and vertices; less: conics that nobody sees.
+# Shares of the tolerance for the offset; the file gets the rest. DXF without --arcs is exact; in
+# SVG hyperbolas alone are not, and cubics follow them with order six. Biarcs (order three) and
+# polylines (order two) need the room more than the offset's conics (order five). Larger for those:
+# more biarcs and vertices; smaller: conics that nobody sees.
 _EXACT, _MOSTLY, _LITTLE = 1.0, 0.875, 0.125
 _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 
@@ -108,7 +108,7 @@ def offset(
     report.print_written(output)
     passed = _keeps(off, tolerance)
     if check:
-        # In steps there is to be nothing left at the next one.
+        # At the step after the last nothing is to be left.
         ended = () if step is None else ((len(distances) + 1) * step,)
         passed &= _check(output, source, contours, (*distances, *ended), tolerance)
     if not passed:
@@ -116,7 +116,7 @@ def offset(
 
 
 def _share(suffix: str, arcs: bool) -> float:
-    """The offset's share of the tolerance."""
+    """Choose the offset's share of the tolerance."""
     if arcs or suffix not in (".dxf", ".svg"):
         return _LITTLE
     return _EXACT if suffix == ".dxf" else _MOSTLY
@@ -129,7 +129,7 @@ def _contours(
     tolerance: float,
     share: float,
 ) -> list[ss.Contour]:
-    """The offsets asked for, or an error if there is none."""
+    """Make the offsets asked for, or raise an error if there is none."""
     try:
         if step is None:
             contours = offsets_of(source, distances, share * tolerance)
@@ -138,9 +138,9 @@ def _contours(
                 contours = ss.offset(source, step=step, tolerance=share * tolerance, coarse=True)
     except ss.SplineSDFError as error:
         if share < 1.0 and "tolerance" in str(error):
-            # What it names is not what was given.
-            told = f"{error} (of the tolerance {tolerance:.4g}, {share:g} is for the offset itself)"
-            error.args = (told, *error.args[1:])
+            # The tolerance that the error names is not that of the command line.
+            text = f"{error} (of the tolerance {tolerance:.4g}, {share:g} is for the offset itself)"
+            error.args = (text, *error.args[1:])
         raise
     fitted = sorted({contour.distance for contour in contours if contour.fitted})
     if fitted:
@@ -167,7 +167,7 @@ def _contours(
 
 
 def _nothing(source: ss.Shape, distances: tuple[float, ...], tolerance: float) -> None:
-    """Nothing is left only if no point is nearer than an offset would enclose."""
+    """Exit with an error if points are left that an offset would enclose."""
     for distance in distances:
         sides = check_sides(source, distance, [], tolerance)
         if sides.wrong:
@@ -176,7 +176,7 @@ def _nothing(source: ss.Shape, distances: tuple[float, ...], tolerance: float) -
 
 
 def _keeps(off: float, tolerance: float) -> bool:
-    """Whether the contours themselves keep the tolerance, as far as they are measured."""
+    """Whether the contours keep the tolerance, by their measured deviation."""
     if not off <= tolerance:
         _complain(
             f"expected a deviation of at most {tolerance:.4g}, got {off:.4g}: do not use the file; "
@@ -192,7 +192,7 @@ def _check(
     distances: tuple[float, ...],
     tolerance: float,
 ) -> bool:
-    """Measure the file: whether it is within the tolerance, all there, and nothing twice."""
+    """Measure the file: whether its curves are within the tolerance, complete, and there once."""
     wanted = Counter(float(contour.distance) for contour in contours)
     with working(f"reading {Path(output).name} back"):
         worst = measure_file(output, source, sorted({*wanted, *distances}), tolerance)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from splinesdf.arclets.culling import candidates_of_cells
 from splinesdf.arclets.points import derivatives_at, points_at
 from splinesdf.arclets.tables import NOTHING, Arclets, Cells, Feet, Searched
+from splinesdf.arclets.thresholds import CORNER
 from splinesdf.ground.arrays import Floats, Ints, as_points, positive
 from splinesdf.ground.blocks import in_blocks, processors
 from splinesdf.meshes.lattice import DistanceGrid, node_count
@@ -33,9 +34,6 @@ _SMALL_BLOCK = 4096
 _IN_CELL = 64
 # 4^8 cells are enough for any block of points, and what is kept of each stays small beside it.
 _MOST_LEVELS = 8
-# Arclets that turn by more than this (radians) where they meet make a corner: compiled pieces and
-# drawing programs' printed digits bend less.
-_CORNER = 1e-6
 # Beyond this many sizes of the shape a point is drawn nearer, along the ray to it: what is closest
 # stays the same, and squares of squares of lengths do not overflow.
 _FAR = 1e20
@@ -342,5 +340,5 @@ def _curvature(boundary: Arclets, turn: Floats, arclet: Ints, at: Floats) -> Flo
         result = cross / np.hypot(first[:, 0], first[:, 1]) ** 3
     for end, near_end in enumerate((at <= _AT_END, at >= 1.0 - _AT_END)):
         angle = np.where(near_end, turn[arclet, end], 0.0)
-        result = np.where(np.abs(angle) > _CORNER, np.copysign(np.inf, angle), result)
+        result = np.where(np.abs(angle) > CORNER, np.copysign(np.inf, angle), result)
     return np.where(arclet >= 0, result, np.nan)

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from splinesdf.arclets.points import bezier_points
+from splinesdf.arclets.thresholds import FAN
 from splinesdf.distance.exact import signed_distance
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.shapes.shape import Shape
@@ -32,8 +33,8 @@ _SAMPLES, _OF_A_PIECE = 4000, 5
 # Stretches of the boundary that come near to having a parallel there are looked at more closely,
 # the nearest ones, each round four times: 4^-8 of a sample's share of the boundary is seen.
 _SUSPECTS, _ROUNDS = 512, 8
-# Directions between the normals of a corner that turns by more than this.
-_FAN, _CORNER = 9, 1e-2
+# Directions between the normals of a corner.
+_FAN = 9
 # Points beside each curve at least, and beside all; the side of the grid.
 _OF_A_CURVE, _BESIDE, _GRID = 16, 4000, 64
 # Rounding, in units in the last place of the largest coordinate.
@@ -248,7 +249,7 @@ def _fans(shape: Shape, distance: float) -> tuple[Floats, Floats, Floats]:
     first = np.arctan2(arriving[:, 1], arriving[:, 0])
     turn = np.arctan2(leaving[after, 1], leaving[after, 0]) - first
     turn = np.where(still, np.pi, (turn + np.pi) % (2.0 * np.pi) - np.pi)
-    rows: Bools = np.abs(turn) > _CORNER
+    rows: Bools = np.abs(turn) > FAN
     share = (np.arange(_FAN) + 0.5) / _FAN
     angle = (first[rows, None] + turn[rows, None] * share).ravel() + 0.5 * np.pi
     normals = np.stack([np.cos(angle), np.sin(angle)], -1)

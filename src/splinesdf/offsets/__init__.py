@@ -1,1 +1,1 @@
-"""Trimmed offsets: what is left of the parallel curves, joined to loops, as few conic arcs."""
+"""Trimmed offsets: segments of parallel curves, joined to loops, as few conic arcs."""

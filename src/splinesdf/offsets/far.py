@@ -17,11 +17,11 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.shapes.shape import Shape
 
-# What is farther than so many times the size is far: parallels there lie within rounding of one
-# another. Smaller: offsets lose their exact corners; larger: work that ends in nothing.
+# Distances beyond so many times the size are far: parallels there differ by rounding only. Smaller:
+# offsets lose their exact corners; larger: time is spent in vain.
 FAR = 2e4
 # Where parallels left loose ends, a fit helps up to so many times the size; beyond, its domain is
-# all empty plane, and the hull must do.
+# all empty plane, and the hull takes its place.
 _EMPTY = 20.0
 # Shares of the tolerance: for dents, for curves that become polygons, and for corners left out.
 _DENTS, _FLAT, _FEWER = 0.25, 0.125, 0.25
@@ -33,22 +33,22 @@ _QUARTER = 0.5 * math.pi + 1e-6
 
 
 def is_far(shape: Shape, distance: float) -> bool:
-    """Whether parallels are not to be told apart at a distance."""
+    """Whether rounding hides parallels from each other at a distance."""
     return distance > FAR * shape.size
 
 
 def has_no_fit(shape: Shape, distance: float) -> bool:
-    """Whether a fit around the boundary is no way to an offset at a distance."""
+    """Whether a distance is too far for a fit around the boundary."""
     return distance > _EMPTY * shape.size
 
 
 def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
-    """The offset of the shape's convex hull, if that is the shape's own within the tolerance.
+    """Offset the shape's convex hull in place of the shape.
 
     Raises
     ------
     InputError
-        If it is not.
+        If both may differ by more than the tolerance.
     """
     least = shape.size**2 / (8.0 * distance) / _DENTS
     if tolerance < least:
@@ -57,7 +57,7 @@ def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
             f"the shape's size, got {tolerance:.2g}: raise it, or ask for a smaller distance"
         )
     centers, radii = _disks(shape, tolerance)
-    normal = _tangents(centers, radii)
+    normal = _normals(centers, radii)
     arcs, weights, lines = [], [], []
     for center, radius, before, after in zip(
         centers, radii + distance, np.roll(normal, 1, axis=0), normal, strict=True
@@ -76,7 +76,7 @@ def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
         weights += [weight] * count
         if len(centers) > 1:
             lines.append(len(arcs))
-            arcs.append(np.stack([around[-1]] * 3))  # where it leads to is known below
+            arcs.append(np.stack([around[-1]] * 3))  # its end is set below
             weights.append(1.0)
     every = np.stack(arcs)
     every[:, 2] = np.roll(every[:, 0], -1, axis=0)
@@ -86,7 +86,7 @@ def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
 
 
 def _disks(shape: Shape, tolerance: float) -> tuple[Floats, Floats]:
-    """Disks whose hull is that of the shape, counterclockwise: its circles, and corners as points.
+    """Find disks with the hull of the shape, counterclockwise: its circles, and corners as points.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def _disks(shape: Shape, tolerance: float) -> tuple[Floats, Floats]:
     with np.errstate(invalid="ignore"):
         apart = np.hypot(*(center[following] - center).T)
     same = round_ & round_[following] & (apart <= _SAME * shape.size)
-    # A corner on a circle has another one of it before or behind it.
+    # A corner on a circle has another corner on that circle before or behind it.
     before = np.roll(same, 1)
     on_circle = same | before
     begins = np.flatnonzero(~before & (on_circle | np.roll(on_circle, 1)))
@@ -120,8 +120,8 @@ def _disks(shape: Shape, tolerance: float) -> tuple[Floats, Floats]:
     return np.concatenate(centers), np.concatenate(radii)
 
 
-def _tangents(centers: Floats, radii: Floats) -> Floats:
-    """The normals, outward, of the lines that touch each disk and the next one."""
+def _normals(centers: Floats, radii: Floats) -> Floats:
+    """Outward normals of the lines that touch each disk and the next one: (n, 2)."""
     apart = np.roll(centers, -1, axis=0) - centers
     length = np.hypot(apart[:, 0], apart[:, 1])
     if len(centers) == 1:
@@ -134,7 +134,7 @@ def _tangents(centers: Floats, radii: Floats) -> Floats:
 
 
 def _points(shape: Shape, apart: float) -> tuple[Floats, Ints]:
-    """Points of the boundary between which its chords are no farther off, and their arclets."""
+    """Sample the boundary so that chords are no farther off it: points, and their arclets."""
     boundary = shape.boundary
     bulge = shape.bends.rows[:, 10]
     count = np.clip(np.ceil(np.sqrt(bulge / apart)), 2, _POINTS).astype(np.int64)
@@ -168,12 +168,12 @@ def _hull(points: Floats) -> Ints:
 
 
 def _fewer(chain: Floats, apart: float) -> Floats:
-    """Corners of a chain of which those left out are no farther from the chords between."""
+    """Thin out a chain: corners that are left out are no farther from the chords."""
     count = len(chain)
     kept, first = [0], 0
     while first < count - 1:
         low, high = first + 1, min(first + 2, count - 1)
-        # As far as can be: doubled while it fits, then halved.
+        # The longest chord: doubled while it fits, then halved.
         while high > low and off_chord(chain[first : high + 1][None])[0] <= apart:
             low, high = high, min(first + 2 * (high - first), count - 1)
         while high - low > 1:

@@ -1,7 +1,7 @@
 """`offset`: trimmed offsets of a shape as few conic arcs, to a tolerance.
 
-for each distance: parallels of all arcs ─→ what nothing else is nearer to ─→ closed loops
-    ─→ lines and circles as they are, everything else by as few conics as the tolerance allows
+for each distance: parallels of all arcs ─→ segments to which nothing is nearer ─→ closed loops
+    ─→ lines and circles as they are, smooth curves by as few conics as the tolerance allows
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.fits.fit import fit
 from splinesdf.ground.arrays import as_floats, finite, positive, shown
-from splinesdf.offsets.at_distance import contours_at
+from splinesdf.offsets.at_distance import Attempt, contours_at
 from splinesdf.offsets.far import has_no_fit, hull_offset, is_far
 from splinesdf.shapes.shape import Shape
 
@@ -27,15 +27,19 @@ from splinesdf.shapes.shape import Shape
 _MEASURED = np.linspace(0.0, 1.0, 9)
 # The least tolerance, as a share of the largest number around: a few hundred roundings.
 _LEAST_TOLERANCE = 1e-13
-# The default tolerance, a share of the size and of the smallest distance; and which share of that
-# it may be at most. Larger: what is left may be nowhere near the distance; smaller: more arcs.
+# The default tolerance, as shares of the size and of the smallest distance, and the largest share
+# of that distance. Larger: contours may be nowhere near the distance; smaller: more arcs.
 _OF_SIZE, _OF_DISTANCE, _COARSE = 1e-3, 1e-2, 0.25
 # Steps inward, and cells of a fit: work ends with an error beyond.
 _MOST_STEPS, _MOST_CELLS = 10_000, 200_000
-# Where rounding decides, as where walls are just twice the distance apart and parallels run on top
-# of each other, it does not a little farther from the boundary: by this share of the largest
-# number around, and if that is still too near, by these shares of the tolerance. Smaller: rounding
-# decides there, too; larger: what is exact is off by as much, and the arcs get less.
+# Where walls are just twice the distance apart, parallels run on top of each other, and rounding
+# decides. A little farther from the boundary it does not: the attempt at the distance itself comes
+# first, then, only if that fails, one shifted by this share of the largest number around, and at
+# last by these shares of the tolerance. Smaller: rounding decides there, too; larger: exact lines
+# and circles are off by as much, and the arcs get less of the tolerance.
+# All loops are shifted, not only the loop that failed: at another distance loops join, part and
+# vanish (those of a cam: 10 without a shift, 9 with one), so that a loop of one attempt has no
+# certain partner in another; and the first shift is below any tolerance.
 _FARTHER = 1e-12
 _SHARES = (0.125, 0.25)
 
@@ -126,11 +130,12 @@ def offset_tolerance(
 
 
 def least_tolerance(shape: Shape, farthest: float) -> float:
-    """The least tolerance of offsets up to a distance: what rounding leaves room for."""
+    """The least tolerance of offsets up to a distance that rounding leaves room for."""
     return _LEAST_TOLERANCE * max(*map(abs, shape.box), farthest)
 
 
 def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
+    """Refuse tolerances below the rounding of the coordinates."""
     least = least_tolerance(shape, farthest)
     if tolerance < least:
         raise InputError(
@@ -142,6 +147,7 @@ def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
 def _until_nothing_is_left(
     shape: Shape, step: float, tolerance: float | None, coarse: bool
 ) -> list[Contour]:
+    """Offset inward at step, 2 step, ... as far as contours are left."""
     try:
         size = finite(step, "step")
     except InputError:
@@ -168,18 +174,18 @@ def _until_nothing_is_left(
 
 
 def _half_width(shape: Shape) -> float:
-    """No point inside is farther from the boundary."""
+    """Bound the distance of points inside from the boundary."""
     xmin, ymin, xmax, ymax = shape.box
     return 0.5 * min(xmax - xmin, ymax - ymin)
 
 
 def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
-    """The contours at one distance."""
+    """Offset at one distance, with a shift, a fit or the hull where parallels do not suffice."""
     if distance < -_half_width(shape) - tolerance:
         return []
     if is_far(shape, distance):
         return [replace(hull_offset(shape, distance, tolerance), tolerance=tolerance)]
-    best = None
+    best: Attempt | None = None
     for farther in _shifts(shape, distance, tolerance):
         shift = math.copysign(farther, distance)
         found = contours_at(shape, distance, tolerance - farther, shift=shift)
@@ -190,8 +196,8 @@ def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
         return nested([replace(contour, tolerance=tolerance) for contour in best.contours])
     if has_no_fit(shape, distance):
         return [replace(hull_offset(shape, distance, tolerance), tolerance=tolerance)]
-    # A boundary that crosses itself within rounding has parallels with loose ends. A level set of
-    # a spline has none, whatever it is a fit of.
+    # A boundary that crosses itself within rounding has parallels with loose ends. Level sets of
+    # splines have none, whatever the spline is a fit of.
     fitted = fit(shape, tolerance=tolerance, band=(distance, distance), max_cells=_MOST_CELLS)
     return nested(
         [
@@ -202,7 +208,7 @@ def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
 
 
 def _shifts(shape: Shape, distance: float, tolerance: float) -> list[float]:
-    """How much farther from the boundary to look, one after the other."""
+    """List by how much farther from the boundary to look, one attempt after the other."""
     if not distance:
         return [0.0]
     shares = [share * tolerance for share in _SHARES]
@@ -211,9 +217,9 @@ def _shifts(shape: Shape, distance: float, tolerance: float) -> list[float]:
 
 
 def deviation(shape: Shape, contours: Iterable[Contour]) -> float:
-    """How far contours are from the distance they stand for, at most, measured exactly.
+    """Measure the largest deviation of contours from the distance that they stand for.
 
-    Nine points on each arc, its ends included, are asked for their exact distance to the shape.
+    The exact distance to the shape is taken at nine points of each arc, its ends included.
     """
     worst = 0.0
     for contour in contours:

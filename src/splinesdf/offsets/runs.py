@@ -1,33 +1,42 @@
-"""Runs: stretches of a loop that one line, one circle or one smooth curve goes through.
+"""Runs: consecutive segments of a loop on one line, one circle or one smooth curve.
 
 Lines and circles of the shape have lines and circles as their offsets, and corners have circles;
-these stay what they are. Everything else between two of them, or two corners, is one free run.
+these stay as they are. All segments between two of them, or two corners, are one free run.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf.arclets.points import angles, off_chord
 from splinesdf.arclets.tables import FREE, ROUND, STRAIGHT
+from splinesdf.arclets.thresholds import SMOOTH
 from splinesdf.ground.arrays import Bools, Floats, Ints
-from splinesdf.offsets.specks import Loops
-from splinesdf.offsets.tables import Runs
-from splinesdf.offsets.trimmed import SMOOTH, parallels
+from splinesdf.offsets.tables import POINT, TANGENT, Loops, Runs
+from splinesdf.offsets.trimmed import parallels, selected
 from splinesdf.shapes.shape import Shape
 
-# A run is one line or one circle if it is no farther off anywhere, as a share of the tolerance or
-# of the largest coordinate, for rounding. Larger: what is exact is off by as much; smaller: chains
-# of many short pieces come back as many lines and arcs.
+# A line or a circle is no farther off its run anywhere than this share of the tolerance or, for
+# rounding, of the largest coordinate. Larger: exact lines and circles are off by as much; smaller:
+# chains of many short pieces come back as many lines and arcs.
 _SHARE, _ROUNDING = 1e-3, 32 * 2.220446049250313e-16
 
 
-def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tuple[Runs, Ints]:
-    """Cut loops into runs, each loop turned so that it begins with one.
+class SegmentKinds(NamedTuple):
+    """Kind and shape of each segment of loops."""
 
-    A line or a circle reaches as far as all of it is within a small share of the tolerance.
+    kind: Ints  # (n,) as in `Kinds`, free where its parallel is neither line nor circle
+    center: Floats  # (n, 2) of a round one
+    points: Floats  # (n, 3, 2) at its start, middle and end
+
+
+def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tuple[Runs, Ints]:
+    """Cut loops into runs, each loop restarted where a run does.
+
+    A line or a circle reaches as far as it stays within a small share of the tolerance.
 
     Returns
     -------
@@ -37,11 +46,10 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     """
     largest = max(abs(value) for value in (*shape.box, distance))
     allowed = max(_SHARE * tolerance, _ROUNDING * largest)
-    kind, center, middle = _kinds(shape, loops, distance, allowed)
+    kind, center, points = _kinds(shape, loops, distance, allowed)
     count = len(kind)
     after = np.arange(1, count + 1)
     after[loops.first[1:] - 1] = loops.first[:-1]
-    points = np.stack([loops.start, middle, loops.end], axis=1)
     same = (kind == kind[after]) & loops.smooth
     same &= (kind != ROUND) | (
         (_off_circle(points, points[after], center[after]) <= allowed)
@@ -49,13 +57,13 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
         & (_tangents_apart(points, points[after], center, center[after]) <= SMOOTH)
     )
     order = np.concatenate([_turned(np.arange(a, b), same[a:b]) for a, b in pairwise(loops.first)])
-    # Where the loops end, runs do.
+    # Runs end where their loops do.
     ends = ~same[order]
     ends[loops.first[1:] - 1] = True
     ends |= _bent(points[order], center[order], kind[order], ends, allowed)
     first = np.concatenate([[0], np.flatnonzero(ends) + 1])
     members = np.repeat(np.arange(len(first) - 1), np.diff(first))
-    kind, center, sweep = kind[order], center[order], _sweeps(shape, loops, order, distance)
+    kind, center, sweep = kind[order], center[order], _sweeps(loops, distance)[order]
     with np.errstate(invalid="ignore"):
         weight = np.abs(sweep)
         total = np.bincount(members, weight)
@@ -67,10 +75,7 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     closed[starts[alone]] = loops.smooth[order[loops.first[alone + 1] - 1]]
     return (
         Runs(
-            loops.elements[order],
-            loops.spans[order],
-            loops.start[order],
-            loops.end[order],
+            selected(loops.segments, order),
             first,
             kind[first[:-1]],
             mean,
@@ -81,30 +86,28 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     )
 
 
-def _kinds(
-    shape: Shape, loops: Loops, distance: float, allowed: float
-) -> tuple[Ints, Floats, Floats]:
-    """Kind, center and middle of every row, free where its parallel is neither line nor circle."""
-    table = shape.kinds
-    arclet, corner = loops.elements.T
+def _kinds(shape: Shape, loops: Loops, distance: float, allowed: float) -> SegmentKinds:
+    """Give each segment the kind of its arclet, if its parallel keeps that."""
+    table, segments = shape.kinds, loops.segments
+    arclet, corner = segments.elements.T
     bridge, around = arclet < 0, np.isfinite(loops.center[:, 0])
     kind = np.where(corner == 1, ROUND, table.kind[arclet])
     kind = np.where(bridge, np.where(around, ROUND, STRAIGHT), kind)
     center = np.where((corner == 1)[:, None], shape.boundary.end[arclet], table.center[arclet])
     center = np.where(bridge[:, None], loops.center, center)
     own = np.flatnonzero(~bridge)
-    middle = 0.5 * (loops.start + loops.end)
-    middle[own] = parallels(shape, loops.elements[own], loops.spans[own].mean(axis=1), distance)[
-        :, :2
-    ]
-    # What is a line or a circle to rounding need not have a parallel that is, far from it.
-    points = np.stack([loops.start, middle, loops.end], axis=1)
+    start, end = segments.start[:, POINT], segments.end[:, POINT]
+    middle = 0.5 * (start + end)
+    at = segments.spans[own].mean(axis=1)
+    middle[own] = parallels(shape, segments.elements[own], at, distance)[:, POINT]
+    # An arclet that is a line or a circle to rounding need not have such a parallel far from it.
+    points = np.stack([start, middle, end], axis=1)
     off = np.where(kind == ROUND, _off_circle(points[:, 1:2], points, center), off_chord(points))
-    return np.where(~bridge & (off > allowed), FREE, kind), center, middle
+    return SegmentKinds(np.where(~bridge & (off > allowed), FREE, kind), center, points)
 
 
 def _off_circle(some: Floats, points: Floats, center: Floats) -> Floats:
-    """How far points (n, k, 2) are from the circles about centers (n, 2) through others."""
+    """Measure how far points (n, k, 2) are off the circles about centers (n, 2) through others."""
     own = np.hypot(*np.moveaxis(some - center[:, None], 2, 0)).mean(axis=1)
     return np.asarray(
         np.abs(np.hypot(*np.moveaxis(points - center[:, None], 2, 0)) - own[:, None]).max(axis=1)
@@ -112,16 +115,16 @@ def _off_circle(some: Floats, points: Floats, center: Floats) -> Floats:
 
 
 def _tangents_apart(one: Floats, other: Floats, center: Floats, others: Floats) -> Floats:
-    """By how much the tangents of two circles differ (radians) at the far ends of two arcs.
+    """Compare tangents of two circles (radians) at the far ends of two arcs: the larger angle.
 
-    An arc so short that any circle will do may turn by far more than the circle beside it.
+    An arc so short that any circle fits it may turn by far more than the circle beside it.
     """
     start, end = (angles(at - center, at - others) for at in (one[:, 0], other[:, -1]))
     return np.maximum(np.abs(start), np.abs(end))
 
 
 def _bent(points: Floats, center: Floats, kind: Ints, ends: Bools, allowed: float) -> Bools:
-    """Where straight and round runs must end early, not to leave their line or their circle."""
+    """Find where straight and round runs must end early to stay on their line or circle."""
     result = np.zeros(len(ends), dtype=np.bool_)
     last = np.flatnonzero(ends)
     for a, b in zip([0, *(last[:-1] + 1).tolist()], (last + 1).tolist(), strict=True):
@@ -147,10 +150,10 @@ def _bent(points: Floats, center: Floats, kind: Ints, ends: Bools, allowed: floa
 
 
 def _straight_parts(chain: Floats, allowed: float) -> Ints:
-    """The segments of a nearly straight chain with which lines end, each as long as can be.
+    """Cut a nearly straight chain into the longest lines: the segments with which they end.
 
-    A line from a vertex to a later one passes between as near as allowed if its direction is
-    within a sector about each of them.
+    A line from one vertex to another passes as near as allowed to all vertices between if its
+    direction is within a sector about each of them.
     """
     result = []
     first, number = 0, 1
@@ -174,25 +177,22 @@ def _straight_parts(chain: Floats, allowed: float) -> Ints:
     return np.array(result, dtype=np.int64)
 
 
-def _sweeps(shape: Shape, loops: Loops, order: Ints, distance: float) -> Floats:
-    """How far the tangent turns along each row, all less than half a turn."""
-    result = np.zeros(len(order))
-    rows = loops.elements[order]
-    own = np.flatnonzero(rows[:, 0] >= 0)
-    a, b = (
-        parallels(shape, rows[own], loops.spans[order[own], k], distance)[:, 2:4] for k in (0, 1)
-    )
-    result[own] = angles(a, b)
-    bridges = np.flatnonzero(np.isfinite(loops.center[order, 0]))
-    at = order[bridges]
-    result[bridges] = angles(loops.start[at] - loops.center[at], loops.end[at] - loops.center[at])
-    corners = rows[:, 1] == 1
-    # Around the tip of a cusp rounding may take half a turn for one to the other side.
+def _sweeps(loops: Loops, distance: float) -> Floats:
+    """Turn of the tangent along each segment (radians), less than half a turn each: (n,)."""
+    segments, center = loops.segments, loops.center
+    result = np.zeros(len(center))
+    own = np.flatnonzero(segments.elements[:, 0] >= 0)
+    result[own] = angles(segments.start[own, TANGENT], segments.end[own, TANGENT])
+    arcs = np.flatnonzero(np.isfinite(center[:, 0]))
+    start, end = segments.start[arcs, POINT], segments.end[arcs, POINT]
+    result[arcs] = angles(start - center[arcs], end - center[arcs])
+    corners = segments.elements[:, 1] == 1
+    # Around the tip of a cusp rounding may take a half turn for a half turn to the other side.
     result[corners] = np.copysign(result[corners], distance)
     return result
 
 
 def _turned(rows: Ints, same: Bools) -> Ints:
-    """The rows of a loop, starting behind a break if there is one."""
+    """Restart the rows of a loop behind its last break, if there is a break."""
     breaks = np.flatnonzero(~same)
     return np.concatenate([rows[breaks[-1] + 1 :], rows[: breaks[-1] + 1]]) if len(breaks) else rows

@@ -1,44 +1,34 @@
-"""What is left of the parallel curves at a distance, see `splinesdf.offsets.kernels.trim`."""
+"""Segments of parallels that nothing is nearer to, see `splinesdf.offsets.kernels.trim`."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from splinesdf.arclets.joints import CUSP
 from splinesdf.arclets.tables import Joints
+from splinesdf.arclets.thresholds import SMOOTH, TANGENT_NOISE
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, Ints
-from splinesdf.offsets.tables import Chains, Parallels, Turns, Walls
+from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.offsets.tables import Chains, OffsetSegments, Parallels, Turns, Walls
 from splinesdf.shapes.shape import Shape
 
-# Rounding in a distance, as a multiple of the largest number around: what is not farther than the
-# distance by more counts as nearer, so that walls just twice the distance apart leave nothing
-# between them. Smaller: rounding decides where; larger: what is nearly that close is lost.
+# Rounding in a distance, as a share of the largest number around. Walls whose distance exceeds that
+# of the parallels by no more count as nearer, so that walls just twice the distance apart leave
+# nothing between them. Smaller: rounding decides there; larger: slots nearly as narrow are lost.
 _GRAIN = 64 * 2.220446049250313e-16
-# Stretches shorter than this share of the tolerance are judged by their middles.
+# Segments shorter than this share of the tolerance are judged by their middles.
 _SHORTEST = 1e-3
-# Joints that turn by less (radians) are smooth, and so are those that leave open or doubled less of
-# the offset, along its tangent, than the second share of the tolerance. Larger: tangents jump, and
-# chains of many such joints are off; smaller: rounding in tangents makes corners.
-SMOOTH, _DOUBLED = 1e-7, 1e-3
-# Tangents of compiled pieces are off by as much (radians). Larger: corners are passed over that
-# matter to distances far beyond the size; smaller: smooth curves are cut at their joints there.
-_NOISE = 1e-12
-# Room for stretches at first.
+# Joints that turn by less than `SMOOTH` are smooth only if they leave open or doubled less of the
+# offset, along its tangent, than this share of the tolerance. Larger: gaps and overlaps are seen;
+# smaller: far out, rounding in tangents makes corners.
+_DOUBLED = 1e-3
+# Room for segments at first.
 _ROOM = 64
 
 
-class Stretches(NamedTuple):
-    """Parts of parallels that are the offset, in order along each loop of the shape."""
-
-    elements: Ints  # (n, 2) the arclet, and 1 for the arc around its end, else 0
-    spans: Floats  # (n, 2) the parameters at start and end
-
-
-def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH) -> Stretches:
-    """The stretches of all parallels at a distance that nothing is nearer to.
+def trimmed(
+    shape: Shape, distance: float, tolerance: float, smooth: float = SMOOTH
+) -> OffsetSegments:
+    """Trim all parallels at a distance: segments to which nothing is nearer, in order along loops.
 
     Parameters
     ----------
@@ -46,9 +36,9 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
     distance : float
         Not 0.
     tolerance : float
-        Stretches far shorter than it may be missing.
+        Segments far shorter than it may be missing.
     smooth : float
-        Joints that turn by less (radians) are none, see `smooth_turn`.
+        Joints that turn by less (radians) have no corner, see `smooth_turn`.
 
     Raises
     ------
@@ -63,7 +53,7 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
     count = len(walls.bends)
     bent, reach = np.empty(count, dtype=np.bool_), np.empty((count, 3), dtype=np.int64)
     turns = Turns(joints.order, joints.loops, joints.turn, joints.turning)
-    own_chains(turns, walls.bends, distance, CUSP, bent, reach)
+    own_chains(turns, walls.bends, distance, bent, reach)
     chains = Chains(joints.order, joints.loops, joints.place, bent, reach)
     room = 2 * count + _ROOM
     while True:
@@ -77,17 +67,44 @@ def trimmed(shape: Shape, distance: float, tolerance: float, smooth: float = SMO
                 f"{distance:g}, which takes more: ask for another, or offset loops by themselves"
             )
         if found <= room:
-            return Stretches(elements[:found], spans[:found])
+            return segments_at(shape, elements[:found], spans[:found], distance)
         room = found
 
 
+def whole(shape: Shape) -> OffsetSegments:
+    """Take the boundary itself: the offset at the distance 0."""
+    order = shape.joints.order
+    elements = np.column_stack([order, np.zeros_like(order)])
+    return segments_at(shape, elements, np.tile([0.0, 1.0], (len(order), 1)), 0.0)
+
+
+def segments_at(shape: Shape, elements: Ints, spans: Floats, distance: float) -> OffsetSegments:
+    """Make segments of parallels between parameters (n, 2) of their elements (n, 2)."""
+    start, end = (parallels(shape, elements, at, distance) for at in spans.T)
+    return OffsetSegments(elements, spans, start, end)
+
+
+def selected(segments: OffsetSegments, rows: Ints | Bools) -> OffsetSegments:
+    """Take some rows of the table, in the order given."""
+    elements, spans, start, end = segments
+    return OffsetSegments(elements[rows], spans[rows], start[rows], end[rows])
+
+
+def stacked(first: OffsetSegments, second: OffsetSegments) -> OffsetSegments:
+    """Append the rows of a second table to those of a first."""
+    elements, spans, start, end = (
+        np.concatenate(columns) for columns in zip(first, second, strict=True)
+    )
+    return OffsetSegments(elements, spans, start, end)
+
+
 def joints_at(shape: Shape, distance: float) -> Joints:
-    """How arclets follow one another, seen from the side that an offset is on."""
+    """Take the joints as seen from the side that an offset is on."""
     return shape.joints_outside if distance > 0.0 else shape.joints
 
 
 def loop_sizes(shape: Shape, distance: float) -> Floats:
-    """The larger side of the loop of each arclet: what is small beside it, not in the drawing."""
+    """Measure the larger side of each arclet's loop: (n,)."""
     joints, boundary = joints_at(shape, distance), shape.boundary
     low = np.minimum(boundary.start, boundary.end)[joints.order]
     high = np.maximum(boundary.start, boundary.end)[joints.order]
@@ -99,7 +116,7 @@ def loop_sizes(shape: Shape, distance: float) -> Floats:
 
 
 def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floats:
-    """Point, tangent of the shape, speed and curvature of parallels, (n, 6)."""
+    """Evaluate frames, see `OffsetSegments`, at parameters (n,) of elements (n, 2): (n, 6)."""
     from splinesdf.offsets.kernels.parallels import (
         parallel_points,  # Numba loads only when it is used
     )
@@ -110,18 +127,20 @@ def parallels(shape: Shape, elements: Ints, at: Floats, distance: float) -> Floa
 
 
 def smooth_turn(distance: float, tolerance: float) -> float:
-    """By how much a joint may turn (radians) and still count as smooth."""
-    return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), _NOISE)) if distance else SMOOTH
+    """Bound the turn (radians) up to which a joint counts as smooth."""
+    if not distance:
+        return SMOOTH
+    return min(SMOOTH, max(_DOUBLED * tolerance / abs(distance), TANGENT_NOISE))
 
 
 def parallels_at(shape: Shape, distance: float) -> Parallels:
-    """What the kernels must know of the parallels at a distance."""
+    """Gather what kernels read of the parallels at a distance."""
     joints = joints_at(shape, distance)
     return Parallels(distance, joints.arcs, joints.turn, joints.tangents)
 
 
 def walls_at(shape: Shape, distance: float) -> Walls:
-    """What they must know of the shape that parallels at a distance are trimmed by."""
+    """Gather what kernels read of the arclets that trim parallels at a distance."""
     boundary = shape.boundary
     size = float(np.abs(boundary.boxes[0]).max()) + abs(distance)
     touch = joints_at(shape, distance).touch

@@ -14,8 +14,8 @@ from splinesdf.arclets.curvature import bends
 from splinesdf.arclets.cutting import build_arclets
 from splinesdf.arclets.joints import joints
 from splinesdf.arclets.kinds import kinds
-from splinesdf.arclets.points import turns_at_ends
 from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
+from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_points, finite, whole

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from splinesdf.arclets.thresholds import CUSP, SMOOTH
 from splinesdf.distance.kernels.feet import derivatives
 from splinesdf.distance.tables import Bent
 from splinesdf.ground.arrays import Floats, Ints
@@ -16,12 +17,6 @@ from splinesdf.ground.jit import uncounted
 
 # Chains that a triangle may see: beyond it, it is halved.
 _CHAINS = 6
-# Chains whose tangents differ by less than this (radians) where arclets meet go on smoothly: what
-# the joint may change is added to the bound. Compiled pieces meet within 1e-9. Larger: what the
-# cosine of the angle takes from a distance is no longer lost in rounding; smaller: more corners.
-_SMOOTH = 1e-7
-# A corner in which the curve turns back up to this (the sine of what is left) is a cusp.
-_CUSP = 1e-3
 # Nearer to a focal point than this (as 1 + kappa u) remainders are too large to be of use.
 _FOCAL = 1e-3
 # The largest product of three numbers a b^2 with a^2 + b^2 = 1, times three.
@@ -64,7 +59,7 @@ def _joint(rows: Floats, before: int, after: int, vx: float, vy: float, r: float
     tx = rows[after, 5] - rows[before, 7]
     ty = rows[after, 6] - rows[before, 8]
     turn = math.sqrt(tx * tx + ty * ty)
-    if turn <= _SMOOTH:
+    if turn <= SMOOTH:
         return 1
     return 2 if vx * tx + vy * ty >= r * turn else 0
 
@@ -217,7 +212,7 @@ def _at_foot(
     d, t, wx, wy = near[foot, 0], near[foot, 1], near[foot, 2], near[foot, 3]
     tx, ty = near[foot, 5], near[foot, 6]
     ahead = wx * tx + wy * ty
-    if not ((t == 1.0 and ahead > _SMOOTH * d) or (t == 0.0 and ahead < -_SMOOTH * d)):
+    if not ((t == 1.0 and ahead > SMOOTH * d) or (t == 0.0 and ahead < -SMOOTH * d)):
         u = wx * ty - wy * tx
         return u, ty, -tx, near[foot, 4] / (1.0 + near[foot, 4] * u), True
     turn = 0.0
@@ -228,8 +223,8 @@ def _at_foot(
         before = bent.rows[bent.previous[ids[foot]]]
         turn = before[7] * ty - before[8] * tx
     # A corner is seen from the side that the curve turns away from.
-    u = -d if turn < -_CUSP else d
-    return u, wx / u, wy / u, 1.0 / u, abs(turn) > _CUSP
+    u = -d if turn < -CUSP else d
+    return u, wx / u, wy / u, 1.0 / u, abs(turn) > CUSP
 
 
 @uncounted

@@ -11,10 +11,10 @@ import math
 import numpy as np
 
 from splinesdf.arclets.tables import ROUND, STRAIGHT
-from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.ground.arrays import Floats
 from splinesdf.ground.jit import kernel, uncounted
 from splinesdf.offsets.kernels.conic_arc import conic_arc, look, run_point
-from splinesdf.offsets.tables import Fitted, Parallels, Path, Runs
+from splinesdf.offsets.tables import Fitted, Parallels, Path, RunArcs, Runs
 
 # An arc is measured at so many times as many points before it is taken.
 _FINER = 4.0
@@ -44,14 +44,7 @@ MOST_ARCS = 2_000_000
 
 
 @kernel
-def fit_runs(
-    parallels: Parallels,
-    runs: Runs,
-    tolerance: Floats,
-    arcs: Floats,
-    weights: Floats,
-    owner: Ints,
-) -> int:
+def fit_runs(parallels: Parallels, runs: Runs, tolerance: Floats, room: RunArcs) -> int:
     """Fill the arcs of all runs, in order; how many there are, even if there is no room for all.
 
     It ends early once there are more than `MOST_ARCS`.
@@ -61,23 +54,20 @@ def fit_runs(
     parallels : Parallels
     runs : Runs
     tolerance : ndarray, shape (n_runs,)
-    arcs : ndarray, shape (room, 3, 2)
-        Filled, relative to the origin of the boundary.
-    weights : ndarray, shape (room,)
+    room : RunArcs
         Filled.
-    owner : ndarray, shape (room,)
-        Filled: the run.
     """
-    found = Fitted(arcs, weights, owner, np.zeros(1, dtype=np.int64))
+    found = Fitted(room, np.zeros(1, dtype=np.int64))
+    segments = runs.segments
     points = np.empty((_ROOM, 2))
     breaks = np.empty(_PARTS * 64 + 8)
     for r in range(runs.first.shape[0] - 1):
         begin, end = runs.first[r], runs.first[r + 1]
         path = Path(
-            runs.elements[begin:end],
-            runs.spans[begin:end],
-            (runs.start[begin, 0], runs.start[begin, 1]),
-            (runs.end[end - 1, 0], runs.end[end - 1, 1]),
+            segments.elements[begin:end],
+            segments.spans[begin:end],
+            (segments.start[begin, 0], segments.start[begin, 1]),
+            (segments.end[end - 1, 0], segments.end[end - 1, 1]),
             runs.closed[r],
         )
         kind = runs.kind[r]
@@ -97,14 +87,14 @@ def fit_runs(
 def _append(
     one: tuple[float, float, float, float, float, float, float], r: int, found: Fitted
 ) -> None:
-    total = found.total[0]
-    if total < found.weights.shape[0]:
-        arcs = found.arcs
+    total, room = found.total[0], found.room
+    if total < room.weights.shape[0]:
+        arcs = room.arcs
         arcs[total, 0, 0], arcs[total, 0, 1] = one[0], one[1]
         arcs[total, 1, 0], arcs[total, 1, 1] = one[2], one[3]
         arcs[total, 2, 0], arcs[total, 2, 1] = one[4], one[5]
-        found.weights[total] = one[6]
-        found.owner[total] = r
+        room.weights[total] = one[6]
+        room.owner[total] = r
     found.total[0] = total + 1
 
 

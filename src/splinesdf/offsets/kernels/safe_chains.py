@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 
+from splinesdf.arclets.thresholds import CUSP, DENTS
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
 from splinesdf.offsets.tables import Turns
@@ -18,16 +19,12 @@ from splinesdf.offsets.tables import Turns
 # How far a chain may turn (radians) and still be called the arclet's own. It must be below pi, by
 # more than an arclet turns.
 _OWN_TURN = 2.0
-# How far (radians) a chain's corners toward the offset may turn in all, and the least w beside one:
-# 45 units of rounding in |d|, of the 64 that count as nothing. Larger: corners are overlooked;
-# smaller: far out, where parallels cross at such angles, rounding says where they are cut.
-_DENTS, _WIDTH = 1e-7, 0.5
+# Least w, see above, beside a corner of a chain that is not looked at.
+_WIDTH = 0.5
 
 
 @kernel
-def own_chains(
-    turns: Turns, bends: Floats, distance: float, cusp: float, bent: Bools, reach: Ints
-) -> None:
+def own_chains(turns: Turns, bends: Floats, distance: float, bent: Bools, reach: Ints) -> None:
     """Fill which arclets bend too much, and how far each one's own chain reaches.
 
     Parameters
@@ -37,8 +34,6 @@ def own_chains(
         Rows of `Bends`.
     distance : float
         Positive to the right of the boundary, which is outward.
-    cusp : float
-        A joint that turns by half a turn within this (radians) is a cusp.
     bent : ndarray of bool, shape (n,)
         Filled, by arclet: whether its parallel may run backward somewhere.
     reach : ndarray, shape (n, 3)
@@ -69,7 +64,7 @@ def own_chains(
                         angle = turn[last]
                     dent = _dent(angle, distance)
                     if dent > 0.0 and not (
-                        dents + dent <= _DENTS
+                        dents + dent <= DENTS
                         and _is_wide(bends, last, distance)
                         and _is_wide(bends, other, distance)
                     ):
@@ -100,7 +95,7 @@ def own_chains(
             for n in range(2 * size):
                 p = (2 * size - 1 - n if not backward else n) % size
                 i, before = order[first + p], order[first + (p - 1) % size]
-                back = max(abs(turn[i]), abs(turn[before])) > math.pi - cusp
+                back = max(abs(turn[i]), abs(turn[before])) > math.pi - CUSP
                 since = 0 if bent[i] or back else since + 1
                 if since <= reach[first + p, backward]:
                     reach[first + p, 2] = 1
