@@ -28,7 +28,7 @@ _DEMO_TOLERANCE = 1e-3
 @click.option("-o", "--output", default="splinesdf-demo", show_default=True, help="The folder.")
 def demo(output: str) -> None:
     """Fit a mechanical part, draw it, save the fit, and write its offsets as SVG and DXF."""
-    source = read_shape("part", None, False)
+    source = read_shape("part", {})
     folder = Path(output)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -49,8 +49,7 @@ from splinesdf.fits.fit import FitResult, fit_steps, require_reached
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
 def fit(
     shape: str,
-    fill: str | None,
-    close: bool,
+    reading: dict[str, Any],
     tolerance: float | None,
     output: str | None,
     picture: str | None,
@@ -58,7 +57,7 @@ def fit(
     **options: Any,
 ) -> None:
     """Fit a signed distance function to SHAPE within a tolerance."""
-    source = read_shape(shape, fill, close)
+    source = read_shape(shape, reading)
     check_outputs(shape, output, picture)
     if output is not None and Path(output).suffix.lower() != ".npz":
         raise ss.InputError(f"expected a file name ending in .npz for a fit, got {output!r}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -10,14 +11,14 @@ import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.shapes import (
     read_shape,
+    reading_options,
 )
 
 
 @click.command()
 @click.argument("file")
-@click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule.")
-@click.option("--close", is_flag=True, help="Close open contours by a straight piece.")
-def info(file: str, fill: str | None, close: bool) -> None:
+@reading_options
+def info(file: str, reading: dict[str, Any]) -> None:
     """Describe FILE: a saved fit (.npz) or a shape."""
     if Path(file).suffix.lower() == ".npz":
         spline = ss.load(file)
@@ -32,13 +33,14 @@ def info(file: str, fill: str | None, close: bool) -> None:
             **report.provenance(spline.made),
         )
     else:
-        shape = read_shape(file, fill, close)
+        shape = read_shape(file, reading)
         report.print_pairs(
             shape=shape.name,
             loops=f"{shape.loop_count} ({shape.fill})",
             pieces=f"{shape.piece_count} ({report.pieces_by_degree(shape)})",
             box=report.box_text(shape.box),
             y="downward" if shape.y_down else "upward",
+            unit="not said" if shape.unit is None else f"{shape.unit:.6g} mm",
         )
 
 

@@ -61,8 +61,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 )
 def offset(
     shape: str,
-    fill: str | None,
-    close: bool,
+    reading: dict[str, Any],
     tolerance: float | None,
     coarse: bool,
     distances: tuple[float, ...],
@@ -82,7 +81,7 @@ def offset(
     if bool(distances) == (step is not None):
         got = "both" if distances else "neither"
         raise ss.InputError(f"expected either --distance (-d) or --step, got {got}: give one")
-    source = read_shape(shape, fill, close)
+    source = read_shape(shape, reading)
     given = {name: value for name, value in milling.items() if value is not None}
     options: dict[str, Any] = {
         "arcs": arcs,

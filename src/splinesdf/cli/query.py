@@ -15,6 +15,7 @@ from splinesdf.cli.report import working
 from splinesdf.cli.shapes import (
     check_outputs,
     read_shape,
+    reading_options,
 )
 from splinesdf.distance.exact import distance_and_gradient
 from splinesdf.ground.atomic import write_text
@@ -25,9 +26,8 @@ from splinesdf.io.input import read_points
 @click.argument("source", metavar="FIT.npz|SHAPE")
 @click.argument("points")
 @click.option("-o", "--output", help="Write the CSV to a file and not to the screen.")
-@click.option("--fill", type=click.Choice(["nonzero", "evenodd"]), help="The fill rule.")
-@click.option("--close", is_flag=True, help="Close open contours by a straight piece.")
-def query(source: str, points: str, output: str | None, fill: str | None, close: bool) -> None:
+@reading_options
+def query(source: str, points: str, output: str | None, reading: dict[str, Any]) -> None:
     """Distance and gradient at the POINTS of a CSV file: x,y,distance,gx,gy.
 
     From a saved fit, or exact from a shape. Not a number: a point that is not one; a shape's
@@ -37,7 +37,7 @@ def query(source: str, points: str, output: str | None, fill: str | None, close:
         spline = ss.load(source)
         ask: Callable[[Any], Any] = spline.value_and_gradient
     else:
-        shape = read_shape(source, fill, close)
+        shape = read_shape(source, reading)
 
         def ask(at: Any) -> Any:
             return distance_and_gradient(shape, at)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import functools
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
 from importlib import resources
 from pathlib import Path
@@ -14,6 +15,7 @@ import splinesdf as ss
 from splinesdf.cli.report import working
 from splinesdf.ground.arrays import positive
 from splinesdf.ground.atomic import check_target
+from splinesdf.io.readers.source import IGNORED, STROKES
 from splinesdf.offsets.offset import offset_tolerance
 
 _BUILT_IN = {"part": "part.svg"} | {f"gamma{i}": f"gamma{i}.json" for i in (1, 2, 3)}
@@ -23,21 +25,53 @@ _SHARE = 1e-3
 Command = Callable[..., None]
 
 
+_READING: tuple[Callable[[Command], Command], ...] = (
+    click.option(
+        "--close", is_flag=True, help="Join open paths end to end, close the rest straight."
+    ),
+    click.option(
+        "--fill",
+        type=click.Choice(["nonzero", "evenodd"]),
+        help="The fill rule; then what is drawn twice counts twice.",
+    ),
+    click.option(
+        "--stroke",
+        type=click.Choice(STROKES),
+        help="SVG: strokes fill nothing, or are closed lines (centre).  [default: none]",
+    ),
+    click.option(
+        "--ignore",
+        type=click.Choice(IGNORED),
+        multiple=True,
+        help="SVG: read without clips or masks; may be given again.",
+    ),
+    click.option("--layer", "layers", multiple=True, help="DXF: this layer; may be given again."),
+    click.option("--gap", type=float, help="DXF: join ends so far apart.  [1e-6 of the size]"),
+    click.option("--columns", nargs=2, help="Tables: the columns of x and y, names or numbers."),
+)
+_NAMES = ("close", "fill", "stroke", "ignore", "layers", "gap", "columns")
+
+
+def reading_options(command: Command) -> Command:
+    """How a shape is read, handed to the command as one argument ``reading``."""
+
+    def read_as(**given: Any) -> None:
+        reading = {name: given.pop(name) for name in _NAMES}
+        reading["layers"] = reading["layers"] or None
+        if reading["columns"]:
+            columns = reading["columns"]
+            reading["columns"] = tuple(int(one) if one.isdigit() else one for one in columns)
+        command(reading=reading, **given)
+
+    bundled: Command = functools.wraps(command)(read_as)
+    for option in _READING:
+        bundled = option(bundled)
+    return bundled
+
+
 def shape_options(command: Command) -> Command:
     """The shape and how it is read."""
-    for option in (
-        click.option(
-            "--close", is_flag=True, help="Join open paths end to end, close the rest straight."
-        ),
-        click.option(
-            "--fill",
-            type=click.Choice(["nonzero", "evenodd"]),
-            help="The fill rule; then what is drawn twice counts twice.",
-        ),
-        click.argument("shape"),
-    ):
-        command = option(command)
-    return command
+    return click.argument("shape")(reading_options(command))
 
 
 def tolerance_option(command: Command) -> Command:
@@ -50,14 +84,14 @@ def tolerance_option(command: Command) -> Command:
     )(command)
 
 
-def read_shape(text: str, fill: str | None, close: bool) -> ss.Shape:
+def read_shape(text: str, reading: Mapping[str, Any]) -> ss.Shape:
     """A shape from a file, or one that comes with the package; its notes go to stderr."""
     with ExitStack() as stack:
         path: Any = text
         if text in _BUILT_IN and not Path(text).exists():
             data = resources.files("splinesdf") / "data" / _BUILT_IN[text]
             path = stack.enter_context(resources.as_file(data))
-        shape = ss.read(path, fill=fill, close=close)
+        shape = ss.read(path, **reading)
     for note in shape.notes:
         click.echo(f"note: {note}", err=True)
     return shape

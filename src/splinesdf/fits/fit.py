@@ -15,7 +15,7 @@ import numpy as np
 
 from splinesdf.errors import ToleranceNotReached
 from splinesdf.fits.certificate import Wanted, cell_errors, largest_error
-from splinesdf.fits.request import Band, FitOptions, request_of, with_options
+from splinesdf.fits.request import Band, FitOptions, fit_options, request_of
 from splinesdf.fits.target import ShapeTarget
 from splinesdf.fits.trials import Trial
 from splinesdf.ground.arrays import Bools, Floats
@@ -127,7 +127,7 @@ class FitResult:
         return self._made.bands
 
 
-@with_options
+@fit_options
 def fit(shape: Shape, *, tolerance: float, **options: Unpack[FitOptions]) -> FitResult:
     """Approximate the signed distance of a shape to a tolerance.
 
@@ -198,7 +198,7 @@ def require_reached(result: FitResult) -> FitResult:
     )
 
 
-@with_options
+@fit_options
 def fit_steps(
     shape: Shape, *, tolerance: float, **options: Unpack[FitOptions]
 ) -> Iterator[FitResult]:

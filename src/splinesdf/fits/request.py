@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Sequence
-from typing import NamedTuple, TypedDict, TypeVar
+from collections.abc import Sequence
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.fits.target import Target
 from splinesdf.ground.arrays import Floats, as_floats, finite, positive, shown, whole
+from splinesdf.ground.options import check_known, with_options
 from splinesdf.meshes import Box
 from splinesdf.meshes.mesh import check_domain
 from splinesdf.spaces.elements import find_element
@@ -54,21 +54,7 @@ DEFAULTS: FitOptions = {
     "min_side": 0.0,
     "certify": True,
 }
-Function = TypeVar("Function", bound=Callable[..., object])
-
-
-def with_options(function: Function) -> Function:
-    """Have help() and completion show the options of a function by name, with their defaults."""
-    signature = inspect.signature(function)
-    own = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-    options = [
-        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=value, annotation=kind)
-        for (name, value), kind in zip(
-            DEFAULTS.items(), FitOptions.__annotations__.values(), strict=True
-        )
-    ]
-    function.__signature__ = signature.replace(parameters=[*own, *options])  # type: ignore[attr-defined]
-    return function
+fit_options = with_options(FitOptions, DEFAULTS)
 
 
 class Request(NamedTuple):
@@ -85,8 +71,7 @@ class Request(NamedTuple):
 
 def request_of(target: Target, tolerance: float, options: FitOptions) -> Request:
     """The request that options make, or an `InputError`."""
-    if unknown := set(options) - set(FitOptions.__annotations__):
-        raise TypeError(f"fit() got an unexpected keyword argument {min(unknown)!r}")
+    check_known("fit", options, FitOptions)
     asked: FitOptions = {**DEFAULTS, **options}
     bands, element = _check_bands(asked["band"]), find_element(asked["element"])
     name, operator, domain = asked["space"], asked["operator"], asked["domain"]

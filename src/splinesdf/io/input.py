@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.ground.paths import as_path, shortened
 from splinesdf.io.readers import READERS
 from splinesdf.io.readers.points import read_blocks
-from splinesdf.io.readers.source import Source, checked_options
+from splinesdf.io.readers.source import ReadOptions, Source, checked_options, read_options
 from splinesdf.shapes.shape import Shape
 
 # Bytes of a file. More: minutes and gigabytes before the first distance; fewer: maps of whole
@@ -22,21 +23,20 @@ from splinesdf.shapes.shape import Shape
 _LARGEST = 500_000_000
 
 
-def read(
-    path: str | os.PathLike[str],
-    *,
-    fill: str | None = None,
-    close: bool = False,
-    stroke: str | None = None,
-    ignore: str | tuple[str, ...] = (),
-) -> Shape:
+@read_options
+def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     """Read a shape; the file's extension says how.
 
     Parameters
     ----------
     path : str or path
-        ``.svg`` or ``.svgz`` (what elements fill, in user units, y pointing down), ``.json``
-        (formulas), ``.csv`` or ``.dat`` (the corners of polygons, a blank line between two).
+        ``.svg`` or ``.svgz`` (what elements fill, in user units, y pointing down), ``.dxf`` (closed
+        outlines of the model space), ``.geojson`` or ``.wkt`` (the union of polygons), ``.json``
+        (formulas, or GeoJSON), ``.csv`` (corners of polygons, a blank line between two) or
+        ``.dat`` (airfoils by Selig or Lednicer, and the same).
+
+    Other Parameters
+    ----------------
     fill : {"nonzero", "evenodd"}, optional
         Instead of the file's rule, of a drawing that of each element. Default: what the file says,
         else nonzero, or evenodd for lines. And unless it is given, a contour that is drawn several
@@ -51,6 +51,14 @@ def read(
     ignore : {"clip-path", "mask"} or several
         Read a drawing as if it had none of these, which otherwise cut it, or are refused where
         they are no regions.
+    layers : str or several, optional
+        Of a DXF file these only; all that are not hidden unless given.
+    gap : float, optional
+        Of a DXF file: how far apart ends of edges may be that are joined, 1e-6 of the size of the
+        drawing unless given.
+    columns : pair of str or int, optional
+        Of a table: the columns of x and y, by name or number from 0. Those named x and y unless
+        given, or the only two.
 
     Returns
     -------
@@ -67,14 +75,14 @@ def read(
     InputError
         If the file is missing, cannot be read, or is not what its extension says.
     """
-    options = checked_options(fill, close, stroke, ignore)
+    asked = checked_options(options)
     with _named(path) as file:
         suffix = file.suffix.lower()
         if suffix not in READERS:
             raise InputError(
                 f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
             )
-        return READERS[suffix](Source(_content(file), file.stem, suffix), options)
+        return READERS[suffix](Source(_content(file), file.stem, suffix), asked)
 
 
 def read_points(path: str | os.PathLike[str]) -> Floats:

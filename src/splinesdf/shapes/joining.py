@@ -36,13 +36,17 @@ def are_open(loops: Sequence[Sequence[Floats]]) -> list[bool | None]:
     return [None if ends is None else math.dist(*ends) > PRINTED_GAP * size for ends in found]
 
 
-def joined(loops: Sequence[list[Floats]]) -> tuple[list[list[Floats]], int]:
+def joined(
+    loops: Sequence[list[Floats]], *, gap: float | None = None
+) -> tuple[list[list[Floats]], int, float]:
     """The loops, open ones joined where an end of one meets an end of another.
 
     Parameters
     ----------
     loops : sequence of lists of ndarray, shape (degree + 1, 2)
         The control points of each piece of each loop, pieces following one another.
+    gap : float, optional
+        How far apart ends may be that meet: 1e-6 of the drawing's size unless given.
 
     Returns
     -------
@@ -51,20 +55,23 @@ def joined(loops: Sequence[list[Floats]]) -> tuple[list[list[Floats]], int]:
         runs as that does; others are turned round where they have to be.
     count : int
         How many were joined to another.
+    largest : float
+        The largest gap between ends that were joined.
 
     Notes
     -----
-    Ends meet if they are no farther apart than 1e-6 of the drawing's size. Each end is paired
+    Each end is paired
     once, those that are equal to the bit first, then the nearest; where more than two meet, the
     earlier ones in the file. Sorting takes most: O(n log n).
     """
     size, _ = extent(loops)
     ends = [_ends(loop, size) for loop in loops]
-    gap = PRINTED_GAP * size
+    gap = PRINTED_GAP * size if gap is None else gap
     rows = [row for row, pair in enumerate(ends) if pair and math.dist(*pair) > gap]
     # End 2 k is the start of the k-th open path, end 2 k + 1 is where it ends.
     points = np.array([ends[row] for row in rows]).reshape(-1, 2)
     partner = _pairs(points, gap)
+    met = [math.dist(points[a], points[b]) for a, b in enumerate(partner) if b >= 0]
     taken: set[int] = set()
     chains: dict[int, list[Floats]] = {}
     count = 0
@@ -77,7 +84,8 @@ def joined(loops: Sequence[list[Floats]]) -> tuple[list[list[Floats]], int]:
         # From the first path of it on, so that a closed chain starts where that does.
         chains[row] = [piece for end in chain for piece in _run(loops[rows[end // 2]], end)]
     rest = set(rows) - set(chains)
-    return [chains.get(row, loop) for row, loop in enumerate(loops) if row not in rest], count
+    kept = [chains.get(row, loop) for row, loop in enumerate(loops) if row not in rest]
+    return kept, count, max(met, default=0.0)
 
 
 def _ends(loop: Sequence[Floats], size: float) -> tuple[Floats, Floats] | None:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from splinesdf.io.readers.formulas import formula_shape
+from splinesdf.io.readers.airfoils import airfoil_shape
+from splinesdf.io.readers.dxf import dxf_shape
+from splinesdf.io.readers.formulas import json_shape
+from splinesdf.io.readers.maps import geojson_shape, wkt_shape
 from splinesdf.io.readers.points import points_shape
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.io.readers.svg import svg_shape
@@ -14,8 +17,11 @@ Reader = Callable[[Source, Options], Shape]
 
 READERS: dict[str, Reader] = {
     ".csv": points_shape,
-    ".dat": points_shape,
-    ".json": formula_shape,
+    ".dat": airfoil_shape,
+    ".dxf": dxf_shape,
+    ".geojson": geojson_shape,
+    ".json": json_shape,
     ".svg": svg_shape,
     ".svgz": svg_shape,
+    ".wkt": wkt_shape,
 }

@@ -11,6 +11,7 @@ from typing import Any
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.maps import GEOJSON_TYPES, geojson_shape
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import compile_curve
@@ -21,7 +22,19 @@ _WHOLE = ("fill", "name")
 _FULL_TURN = [0.0, "2*pi"]
 
 
-def formula_shape(source: Source, options: Options) -> Shape:
+def json_shape(source: Source, options: Options) -> Shape:
+    """Formulas, or a GeoJSON document, which has a type."""
+    try:
+        # As integers, long ones would not convert.
+        content = json.loads(source.text(), parse_int=float)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"expected formulas as JSON, got something else: {error}") from error
+    if isinstance(content, dict) and content.get("type") in GEOJSON_TYPES:
+        return geojson_shape(source, options)
+    return formula_shape(content, source.stem, options)
+
+
+def formula_shape(content: Any, stem: str, options: Options) -> Shape:
     """The curves of ``{"x": ..., "y": ..., "t": [start, stop]}`` or of a list ``"loops"`` of these.
 
     ``"t"`` may be missing (0 to 2π). Instead of ``"x"`` and ``"y"`` a loop may have a list
@@ -29,19 +42,13 @@ def formula_shape(source: Source, options: Options) -> Shape:
     and ``"name"`` stand beside ``"x"``, ``"sections"`` or ``"loops"``. An argument ``fill``
     overrules the file's.
     """
-    try:
-        content = json.loads(
-            source.text(), parse_int=float
-        )  # as integers, long ones would not convert
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"expected formulas as JSON, got something else: {error}") from error
     if not isinstance(content, dict):
         raise InputError(
             f'expected a JSON object such as {{"x": "cos(t)", "y": "sin(t)"}}, got {_kind(content)}'
         )
     fill = options.fill
     rule = fill if fill is not None else _text(content, "fill", "nonzero")
-    name = _text(content, "name", source.stem)
+    name = _text(content, "name", stem)
     if "loops" not in content:
         loops = [_loop(content, _WHOLE)]
     else:

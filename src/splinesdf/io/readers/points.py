@@ -1,8 +1,14 @@
-"""Points as text: one ``x y`` a line, apart by a comma, a semicolon, a tab or spaces."""
+"""Tables of points as text: one point a line, columns apart by a comma, semicolon, tab or spaces.
+
+A header names the columns; ``x`` and ``y`` are taken wherever they are. Where semicolons or tabs
+stand between columns, a comma may stand in a number.
+"""
 
 from __future__ import annotations
 
+import csv
 import math
+import re
 
 import numpy as np
 
@@ -12,6 +18,8 @@ from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import polygon
 
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+
 
 def points_shape(source: Source, options: Options) -> Shape:
     """Closed polygons through the points; a blank line begins the next one.
@@ -19,7 +27,7 @@ def points_shape(source: Source, options: Options) -> Shape:
     A polygon's last point is always joined to its first, whatever ``close`` says.
     """
     loops = []
-    for line, points in read_blocks(source.text(), finite=True):
+    for line, points in read_blocks(source.text(), finite=True, columns=options.columns):
         try:
             loops.append(polygon(points))
         except InputError as error:
@@ -27,7 +35,9 @@ def points_shape(source: Source, options: Options) -> Shape:
     return Shape.from_pieces(loops, fill=options.fill, close=options.close, name=source.stem)
 
 
-def read_blocks(text: str, *, finite: bool) -> list[tuple[int, Floats]]:
+def read_blocks(
+    text: str, *, finite: bool, columns: tuple[str | int, str | int] | None = None
+) -> list[tuple[int, Floats]]:
     """Runs of lines between blank ones: the first line's number and the points, shape (n, 2).
 
     ``#`` starts a comment; a line of nothing else is no blank line. The first line may be a
@@ -35,8 +45,11 @@ def read_blocks(text: str, *, finite: bool) -> list[tuple[int, Floats]]:
 
     Parameters
     ----------
+    text : str
     finite : bool
         Refuse NaN and infinity.
+    columns : pair of str or int, optional
+        Which columns are x and y, by the header's names or by number from 0.
 
     Raises
     ------
@@ -45,11 +58,10 @@ def read_blocks(text: str, *, finite: bool) -> list[tuple[int, Floats]]:
     """
     blocks: list[tuple[int, Floats]] = []
     rows: list[tuple[float, float]] = []
-    first = number = 0
-    header_allowed = True
-    # Not splitlines(): it also splits at separators that no editor counts as a line.
-    for line in text.replace("\r\n", "\n").replace("\r", "\n").split("\n"):
-        number += 1
+    first = 0
+    places: tuple[int, int] | None = None
+    begun = False
+    for number, line in enumerate(lines_of(text), 1):
         if not line.strip():
             _finish(blocks, rows, first)
             rows = []
@@ -58,17 +70,24 @@ def read_blocks(text: str, *, finite: bool) -> list[tuple[int, Floats]]:
         if not content:
             continue
         fields = _fields(content)
-        is_header = header_allowed and _is_word(fields[0])
-        header_allowed = False
-        if is_header:
-            continue
+        if not begun:
+            begun = True
+            is_header = _is_word(fields[0])
+            places = _places(fields, columns, is_header, number)
+            if is_header:
+                continue
         if not rows:
             first = number
-        rows.append(_point(fields, number, finite))
+        rows.append(_point(fields, places, number, finite))
     _finish(blocks, rows, first)
     if not blocks:
         raise InputError("expected points, two numbers a line, got none")
     return blocks
+
+
+def lines_of(text: str) -> list[str]:
+    """The lines; not by splitlines(), which splits where no editor sees a new line."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def _finish(blocks: list[tuple[int, Floats]], rows: list[tuple[float, float]], first: int) -> None:
@@ -77,18 +96,51 @@ def _finish(blocks: list[tuple[int, Floats]], rows: list[tuple[float, float]], f
 
 
 def _fields(content: str) -> list[str]:
-    for separator in ";,":
+    for separator in ";\t,":
         if separator in content:
-            return content.split(separator)
+            if '"' in content:
+                fields = next(csv.reader([content], delimiter=separator, skipinitialspace=True))
+            else:
+                fields = content.split(separator)
+            if separator != ",":
+                fields = [_with_point(field) for field in fields]
+            return [field.strip() for field in fields]
     return content.split()
+
+
+def _with_point(field: str) -> str:
+    return field.replace(",", ".") if _DECIMAL_COMMA.fullmatch(field.strip()) else field
+
+
+def _places(
+    fields: list[str], columns: tuple[str | int, str | int] | None, is_header: bool, line: int
+) -> tuple[int, int] | None:
+    """The columns of x and y; None if there must be two."""
+    names = [field.lower() for field in fields] if is_header else []
+    if columns is not None:
+        found = []
+        for column in columns:
+            if isinstance(column, str):
+                if column.lower() not in names:
+                    raise InputError(
+                        f"line {line}: expected a column {column!r:.40}, got "
+                        f"{', '.join(fields)[:80] if names else 'no header'}"
+                    )
+                column = names.index(column.lower())
+            found.append(column)
+        return found[0], found[1]
+    if "x" in names and "y" in names:
+        return names.index("x"), names.index("y")
+    return None
 
 
 def _is_word(field: str) -> bool:
     """Whether it is no number and not even a misspelled one, such as 1,5."""
-    return not _is_number(field) and field.strip()[:1] not in "+-.0123456789"
+    return not is_number(field) and field.strip()[:1] not in "+-.0123456789"
 
 
-def _is_number(field: str) -> bool:
+def is_number(field: str) -> bool:
+    """Whether a text is a number."""
     try:
         float(field)
     except ValueError:
@@ -96,13 +148,23 @@ def _is_number(field: str) -> bool:
     return True
 
 
-def _point(fields: list[str], line: int, finite: bool) -> tuple[float, float]:
-    if len(fields) != 2:
-        raise InputError(f"line {line}: expected 2 columns, x and y, got {len(fields)}")
+def _point(
+    fields: list[str], places: tuple[int, int] | None, line: int, finite: bool
+) -> tuple[float, float]:
+    if places is None:
+        if len(fields) != 2:
+            raise InputError(
+                f"line {line}: expected 2 columns, x and y, got {len(fields)}: name those that "
+                "are meant, columns=('x', 'y')"
+            )
+        places = 0, 1
+    if max(places) >= len(fields):
+        raise InputError(f"line {line}: expected {max(places) + 1} columns, got {len(fields)}")
+    chosen = [fields[k] for k in places]
     try:
-        x, y = float(fields[0]), float(fields[1])
+        x, y = float(chosen[0]), float(chosen[1])
     except ValueError:
-        shown = fields[1 if _is_number(fields[0]) else 0].strip()
+        shown = chosen[1 if is_number(chosen[0]) else 0]
         raise InputError(f"line {line}: expected a number, got {_short(shown)}") from None
     if finite and not (math.isfinite(x) and math.isfinite(y)):
         raise InputError(f"line {line}: expected finite numbers, got NaN or infinity")

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypedDict
 
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import positive
+from splinesdf.ground.options import check_known, with_options
 
 STROKES = ("none", "centre")
 IGNORED = ("clip-path", "mask")
@@ -41,18 +44,68 @@ class Options(NamedTuple):
     close: bool = False
     stroke: str | None = None
     ignore: frozenset[str] = frozenset()
+    layers: tuple[str, ...] | None = None
+    gap: float | None = None
+    columns: tuple[str | int, str | int] | None = None
 
 
-def checked_options(
-    fill: str | None, close: bool, stroke: str | None, ignore: str | tuple[str, ...]
-) -> Options:
+class ReadOptions(TypedDict, total=False):
+    """The options of `splinesdf.read`, which says what they mean."""
+
+    fill: str | None
+    close: bool
+    stroke: str | None
+    ignore: str | Sequence[str]
+    layers: str | Sequence[str] | None
+    gap: float | None
+    columns: Sequence[str | int] | None
+
+
+DEFAULTS: ReadOptions = {
+    "fill": None,
+    "close": False,
+    "stroke": None,
+    "ignore": (),
+    "layers": None,
+    "gap": None,
+    "columns": None,
+}
+read_options = with_options(ReadOptions, DEFAULTS)
+
+
+def checked_options(given: ReadOptions) -> Options:
     """The options, or an `InputError`."""
+    check_known("read", given, ReadOptions)
+    fill, stroke, gap = given.get("fill"), given.get("stroke"), given.get("gap")
     if fill is not None and fill not in ("nonzero", "evenodd"):
         raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r:.60}")
     if stroke is not None and stroke not in STROKES:
         raise InputError(f"expected stroke of {', '.join(STROKES)}, got {stroke!r:.60}")
-    names = (ignore,) if isinstance(ignore, str) else tuple(ignore)
-    for name in names:
+    ignored = _names(given.get("ignore", ()), "ignore")
+    for name in ignored:
         if name not in IGNORED:
             raise InputError(f"expected to ignore {' or '.join(IGNORED)}, got {name!r:.60}")
-    return Options(fill, close, stroke, frozenset(names))
+    layers = given.get("layers")
+    columns = given.get("columns")
+    if columns is not None:
+        chosen = tuple(columns)
+        good = len(chosen) == 2 and all(isinstance(one, (str, int)) for one in chosen)
+        if not good or any(isinstance(one, int) and one < 0 for one in chosen):
+            raise InputError(f"expected columns as two names or numbers, got {columns!r:.60}")
+        columns = chosen
+    return Options(
+        fill,
+        bool(given.get("close", False)),
+        stroke,
+        frozenset(ignored),
+        None if layers is None else _names(layers, "layers"),
+        None if gap is None else positive(gap, "gap"),
+        None if columns is None else (columns[0], columns[1]),
+    )
+
+
+def _names(value: str | Sequence[str], what: str) -> tuple[str, ...]:
+    names = (value,) if isinstance(value, str) else tuple(value)
+    if not all(isinstance(name, str) for name in names):
+        raise InputError(f"expected {what} as texts, got {value!r:.60}")
+    return names

@@ -1,0 +1,210 @@
+"""DXF drawings: the closed outlines that their edges make, filled by nesting.
+
+    entities ──blocks resolved──> edges, exactly ──drawn twice: once──> joined end to end ──> loops
+
+ezdxf reads the file and resolves blocks; curves are taken from the entities' own numbers, as its
+paths are cubics that miss arcs by 3e-4 of their radius.
+"""
+
+from __future__ import annotations
+
+import io
+import logging
+import math
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from splinesdf.errors import InputError, MissingExtraError
+from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
+from splinesdf.io.readers.source import Options, Source
+from splinesdf.shapes.joining import are_open, joined
+from splinesdf.shapes.loops import extent
+from splinesdf.shapes.shape import Shape
+
+Loops = list[list[Floats]]
+# Millimeters of $INSUNITS, by its numbers.
+_UNITS = {
+    1: 25.4, 2: 304.8, 3: 1609344.0, 4: 1.0, 5: 10.0, 6: 1000.0, 7: 1e6, 8: 25.4e-6, 9: 25.4e-3,
+    10: 914.4, 11: 1e-7, 12: 1e-6, 13: 1e-3, 14: 100.0, 15: 1e4, 16: 1e5,
+}  # fmt: skip
+# Entities of a drawing, those in blocks as often as they are inserted. More: a few lines of
+# INSERT within INSERT take all time and memory.
+_MOST_ENTITIES = 1_000_000
+# Ends of edges drawn twice agree to this share of the drawing's size: it is what printed digits
+# leave. Larger: edges side by side count once; smaller: edges drawn twice do not.
+_SAME = 1e-9
+
+
+class _Edge(NamedTuple):
+    """An entity as pieces, and the name that messages have for it."""
+
+    kind: str
+    pieces: list[Floats]
+
+
+def dxf_shape(source: Source, options: Options) -> Shape:
+    """The region inside an odd number of the closed outlines of the model space."""
+    document, damaged = _document(source.content)
+    left_out: Counter[str] = Counter()
+    edges = list(_edges(document, options, left_out))
+    notes = [f"mended while reading: {damaged} errors in the file"] if damaged else []
+    if left_out:
+        words = ", ".join(f"{count} {name}" for name, count in left_out.items())
+        notes.append(f"left out: {words}")
+    if not edges:
+        raise InputError(
+            f"expected lines, arcs, polylines or splines in the model space, got "
+            f"{'; '.join(notes) or 'none'}"
+        )
+    edges, again = _once(edges)
+    if again:
+        notes.append(f"drawn again, counted once: {again} edges")
+    loops, about_joints = _joined([edge.pieces for edge in edges], options)
+    loops, about_open = _without_open(loops, options)
+    notes += [note for note in (about_joints, about_open) if note]
+    unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)))
+    if unit is None:
+        notes.append("the file does not say its unit ($INSUNITS)")
+    return Shape.from_pieces(
+        loops,
+        fill=options.fill or "evenodd",
+        close=options.close,
+        name=source.stem,
+        notes=tuple(notes),
+        once=options.fill is None,
+        unit=unit,
+    )
+
+
+def _document(content: bytes) -> tuple[Any, int]:
+    """The drawing, and how many errors were mended in it."""
+    try:
+        from ezdxf import recover
+        from ezdxf.lldxf.const import DXFError
+    except ImportError as error:
+        raise MissingExtraError(
+            "reading DXF files needs ezdxf: pip install 'splinesdf[dxf]'"
+        ) from error
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
+    try:
+        document, auditor = recover.read(io.BytesIO(content))
+    except (DXFError, OSError) as error:
+        text = " ".join(str(error).split())
+        raise InputError(f"expected a DXF file, got a damaged one: {text[:120]}") from error
+    except Exception as error:  # what a damaged file makes its reader run into
+        raise InputError(
+            f"expected a DXF file, got one that cannot be read ({type(error).__name__})"
+        ) from error
+    return document, len(auditor.errors)
+
+
+def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[_Edge]:
+    """The edges of the model space, blocks resolved."""
+    from ezdxf import disassemble
+
+    layers = None if options.layers is None else {name.lower() for name in options.layers}
+    if layers is not None:
+        known = {layer.dxf.name.lower() for layer in document.layers}
+        used = {entity.dxf.get("layer", "0").lower() for entity in document.modelspace()}
+        if missing := layers - known - used:
+            names = ", ".join(sorted(known | used))
+            raise InputError(f"expected layers of {names[:200]}, got {min(missing)!r:.60}")
+    hidden = {
+        layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()
+    }
+    for count, entity in enumerate(_resolved(disassemble, document)):
+        if count >= _MOST_ENTITIES:
+            raise InputError(f"expected at most {_MOST_ENTITIES:,} entities, got more")
+        kind, layer = entity.dxftype(), entity.dxf.get("layer", "0").lower()
+        if layers is not None and layer not in layers:
+            left_out["entities on other layers"] += 1
+        elif layers is None and layer in hidden:
+            left_out["entities on hidden layers"] += 1
+        elif kind not in EDGES:
+            left_out[kind] += 1
+        elif is_tilted(entity):
+            left_out[f"tilted {kind}"] += 1
+        else:
+            try:
+                for pieces in EDGES[kind](entity):
+                    if pieces:
+                        yield _Edge(kind, pieces)
+            except Flat as reason:
+                left_out[f"{kind} ({reason})"] += 1
+
+
+def _resolved(disassemble: Any, document: Any) -> Iterator[Any]:
+    try:
+        yield from disassemble.recursive_decompose(document.modelspace())
+    except (RecursionError, ArithmeticError, AttributeError, ValueError, TypeError) as error:
+        raise InputError(
+            f"expected blocks that can be resolved, got damaged ones ({type(error).__name__})"
+        ) from error
+
+
+def _once(edges: list[_Edge]) -> tuple[list[_Edge], int]:
+    """Edges without those that are drawn again, either way round; how many those are."""
+    size, _ = extent([edge.pieces for edge in edges])
+    grid = _SAME * size
+    seen: set[tuple[int, ...]] = set()
+    kept = []
+    for edge in edges:
+        pieces = edge.pieces
+        middle = pieces[len(pieces) // 2]
+        inner = middle.mean(axis=0) if len(pieces) % 2 else middle[0]
+        ends = sorted(
+            tuple(np.rint(point / grid).astype(object)) for point in (pieces[0][0], pieces[-1][-1])
+        )
+        key = (*ends[0], *ends[1], *np.rint(inner / grid).astype(object), len(pieces))
+        if key not in seen:
+            seen.add(key)
+            kept.append(edge)
+    return kept, len(edges) - len(kept)
+
+
+def _joined(loops: Loops, options: Options) -> tuple[Loops, str | None]:
+    """Edges joined end to end, and the largest gap that was met."""
+    size, _ = extent(loops)
+    chains, count, gap = joined(loops, gap=options.gap)
+    if not count or gap == 0.0:
+        return chains, None
+    if gap <= 1e-12 * size:
+        return chains, None
+    return [_bridged(chain) for chain in chains], (
+        f"joined end to end: {count} edges, over gaps of up to {gap:.3g}"
+    )
+
+
+def _bridged(chain: list[Floats]) -> list[Floats]:
+    """The chain with straight pieces where one piece does not begin where the last one ended."""
+    result = [chain[0]]
+    for piece in chain[1:]:
+        if np.any(piece[0] != result[-1][-1]):
+            result.append(np.array([result[-1][-1], piece[0]]))
+        result.append(piece)
+    if len(result) > 1 and np.any(result[0][0] != result[-1][-1]):
+        gap = math.dist(result[0][0], result[-1][-1])
+        if gap <= max(math.dist(p[0], p[-1]) for p in result):
+            result.append(np.array([result[-1][-1], result[0][0]]))
+    return result
+
+
+def _without_open(loops: Loops, options: Options) -> tuple[Loops, str | None]:
+    """Closed outlines; what is said of open ones, which are left out where anything else is."""
+    flags = are_open(loops)
+    closed = [loop for loop, is_open in zip(loops, flags, strict=True) if is_open is False]
+    count = flags.count(True)
+    if not count or options.close or not closed:
+        return [
+            loop for loop, is_open in zip(loops, flags, strict=True) if is_open is not None
+        ], None
+    first = next(loop for loop, is_open in zip(loops, flags, strict=True) if is_open)
+    (x, y), (x_end, y_end) = first[0][0], first[-1][-1]
+    return closed, (
+        f"left out: {count} open outlines, the first from ({x:.6g}, {y:.6g}) to ({x_end:.6g}, "
+        f"{y_end:.6g}): a larger gap= joins them, close=True (--close) closes them"
+    )
