@@ -82,7 +82,7 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
             raise InputError(
                 f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
             )
-        return READERS[suffix](Source(_content(file), file.stem, suffix), asked)
+        return READERS[suffix](Source(file, _content(file), file.stem, suffix), asked)
 
 
 def read_points(path: str | os.PathLike[str]) -> Floats:
@@ -103,7 +103,7 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
             [
                 points
                 for _, points in read_blocks(
-                    Source(_content(file), file.stem, file.suffix).text(), finite=False
+                    Source(file, _content(file), file.stem, file.suffix).text(), finite=False
                 )
             ]
         )

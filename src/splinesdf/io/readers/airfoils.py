@@ -66,7 +66,7 @@ def _without_prose(text: str) -> tuple[str, tuple[str, ...]]:
 def _is_row(line: str) -> bool:
     """Whether a line may be a point: two columns, the first of which is a number."""
     fields = line.partition("#")[0].replace(",", " ").replace(";", " ").split()
-    return len(fields) >= 1 and is_number(fields[0]) and not _is_domain(line)
+    return len(fields) == 2 and is_number(fields[0])
 
 
 def _is_domain(line: str) -> bool:

@@ -8,7 +8,6 @@ paths are cubics that miss arcs by 3e-4 of their radius.
 
 from __future__ import annotations
 
-import io
 import logging
 import math
 from collections import Counter
@@ -48,7 +47,7 @@ class _Edge(NamedTuple):
 
 def dxf_shape(source: Source, options: Options) -> Shape:
     """The region inside an odd number of the closed outlines of the model space."""
-    document, damaged = _document(source.content)
+    document, damaged = _document(source)
     left_out: Counter[str] = Counter()
     edges = list(_edges(document, options, left_out))
     notes = [f"mended while reading: {damaged} errors in the file"] if damaged else []
@@ -80,9 +79,10 @@ def dxf_shape(source: Source, options: Options) -> Shape:
     )
 
 
-def _document(content: bytes) -> tuple[Any, int]:
+def _document(source: Source) -> tuple[Any, int]:
     """The drawing, and how many errors were mended in it."""
     try:
+        import ezdxf.filemanagement
         from ezdxf import recover
         from ezdxf.lldxf.const import DXFError
     except ImportError as error:
@@ -91,7 +91,11 @@ def _document(content: bytes) -> tuple[Any, int]:
         ) from error
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
     try:
-        document, auditor = recover.read(io.BytesIO(content))
+        try:
+            document = ezdxf.filemanagement.readfile(str(source.path))
+            auditor = document.audit()
+        except Exception:  # recover mends what it can
+            document, auditor = recover.readfile(str(source.path))
     except (DXFError, OSError) as error:
         text = " ".join(str(error).split())
         raise InputError(f"expected a DXF file, got a damaged one: {text[:120]}") from error
@@ -113,6 +117,8 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
         if missing := layers - known - used:
             names = ", ".join(sorted(known | used))
             raise InputError(f"expected layers of {names[:200]}, got {min(missing)!r:.60}")
+    if "clip-path" not in options.ignore:
+        _check_clips(document)
     hidden = {
         layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()
     }
@@ -135,6 +141,19 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
                         yield _Edge(kind, pieces)
             except Flat as reason:
                 left_out[f"{kind} ({reason})"] += 1
+
+
+def _check_clips(document: Any) -> None:
+    """Refuse blocks that are cut to a part (XCLIP): what is outside would count."""
+    from ezdxf.xclip import XClip
+
+    for insert in document.query("INSERT"):
+        clip = XClip(insert)
+        if clip.has_clipping_path and clip.is_clipping_enabled:
+            raise InputError(
+                f"expected blocks that are not clipped, got a part of {insert.dxf.name!r:.40}: "
+                "ignore='clip-path' (--ignore clip-path) reads them whole"
+            )
 
 
 def _resolved(disassemble: Any, document: Any) -> Iterator[Any]:

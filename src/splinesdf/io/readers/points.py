@@ -1,7 +1,8 @@
 """Tables of points as text: one point a line, columns apart by a comma, semicolon, tab or spaces.
 
-A header names the columns; ``x`` and ``y`` are taken wherever they are. Where semicolons or tabs
-stand between columns, a comma may stand in a number.
+A header names the columns; ``x`` and ``y`` are taken wherever they are, and a new value in a column
+``contour``, as `write` has one, begins a new polygon. Where semicolons or tabs stand between columns,
+a comma may stand in a number.
 """
 
 from __future__ import annotations
@@ -60,6 +61,8 @@ def read_blocks(
     rows: list[tuple[float, float]] = []
     first = 0
     places: tuple[int, int] | None = None
+    contour: int | None = None
+    label = ""
     begun = False
     for number, line in enumerate(lines_of(text), 1):
         if not line.strip():
@@ -75,7 +78,12 @@ def read_blocks(
             is_header = _is_word(fields[0])
             places = _places(fields, columns, is_header, number)
             if is_header:
+                names = [field.lower() for field in fields]
+                contour = names.index("contour") if "contour" in names else None
                 continue
+        if contour is not None and contour < len(fields) and fields[contour] != label:
+            _finish(blocks, rows, first)
+            rows, label = [], fields[contour]
         if not rows:
             first = number
         rows.append(_point(fields, places, number, finite))

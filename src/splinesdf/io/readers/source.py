@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NamedTuple, TypedDict
 
 from splinesdf.errors import InputError
@@ -16,6 +17,7 @@ IGNORED = ("clip-path", "mask")
 class Source(NamedTuple):
     """A file."""
 
+    path: Path
     content: bytes
     stem: str  # its name without folder and ending
     suffix: str  # its ending in small letters, with the dot
