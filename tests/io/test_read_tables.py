@@ -117,11 +117,7 @@ def test_holes_are_holes_whichever_way_they_run(read: Read, turned: bool) -> Non
     for content in (polygon, {"type": "Feature", "geometry": polygon, "properties": None}):
         for name in ("a.geojson", "a.json"):
             shape = read(name, json.dumps(content))
-            assert np.sign(ss.signed_distance(shape, [(2, 2), (6, 6), (4, 4)])).tolist() == [
-                1,
-                1,
-                -1,
-            ]
+            assert np.sign(ss.signed_distance(shape, places)).tolist() == [1, 1, -1]
     lines = ", ".join(
         "(" + ", ".join(f"{x} {y}" for x, y in r) + ")" for r in polygon["coordinates"]
     )

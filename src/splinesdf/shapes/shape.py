@@ -18,7 +18,7 @@ from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, Ints, as_points, finite, whole
+from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
 from splinesdf.shapes.boundary import filled_boundary, touching_of
 from splinesdf.shapes.loops import closed_loops
 from splinesdf.shapes.repeats import drawn_once, repeats_note
@@ -73,6 +73,8 @@ class Shape:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "control", as_points(self.control))
+        if self.unit is not None:
+            object.__setattr__(self, "unit", positive(self.unit, "unit"))
 
     @classmethod
     def from_pieces(

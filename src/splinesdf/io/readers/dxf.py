@@ -47,6 +47,8 @@ class _Edge(NamedTuple):
 
 def dxf_shape(source: Source, options: Options) -> Shape:
     """The region inside an odd number of the closed outlines of the model space."""
+    if not source.content.strip():
+        raise InputError("the file is empty")
     document, damaged = _document(source)
     left_out: Counter[str] = Counter()
     edges = list(_edges(document, options, left_out))

@@ -1,8 +1,8 @@
 """Tables of points as text: one point a line, columns apart by a comma, semicolon, tab or spaces.
 
 A header names the columns; ``x`` and ``y`` are taken wherever they are, and a new value in a column
-``contour``, as `write` has one, begins a new polygon. Where semicolons or tabs stand between columns,
-a comma may stand in a number.
+``contour``, as `write` has one, begins a new polygon. Where semicolons or tabs stand between
+columns, a comma may stand in a number.
 """
 
 from __future__ import annotations
@@ -62,6 +62,7 @@ def read_blocks(
     first = 0
     places: tuple[int, int] | None = None
     contour: int | None = None
+    named = 0  # columns that the header has
     label = ""
     begun = False
     for number, line in enumerate(lines_of(text), 1):
@@ -80,7 +81,12 @@ def read_blocks(
             if is_header:
                 names = [field.lower() for field in fields]
                 contour = names.index("contour") if "contour" in names else None
+                named = len(names)
                 continue
+        if named and len(fields) != named:
+            raise InputError(
+                f"line {number}: expected {named} columns{_axes(named)}, got {len(fields)}"
+            )
         if contour is not None and contour < len(fields) and fields[contour] != label:
             _finish(blocks, rows, first)
             rows, label = [], fields[contour]
@@ -114,6 +120,10 @@ def _fields(content: str) -> list[str]:
                 fields = [_with_point(field) for field in fields]
             return [field.strip() for field in fields]
     return content.split()
+
+
+def _axes(count: int) -> str:
+    return ", x and y" if count == 2 else ""
 
 
 def _with_point(field: str) -> str:
