@@ -51,6 +51,7 @@ def contour() -> ss.Contour:
 KINDS: dict[str, str] = {
     **dict.fromkeys(("tolerance", "step", "max_distance", "min_side", "level", "beyond"), "number"),
     **dict.fromkeys(("gap", "unit"), "number"),
+    **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
     **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
     **dict.fromkeys(("points", "distances", "control", "knots", "weights", "levels"), "array"),
