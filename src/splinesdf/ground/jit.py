@@ -25,7 +25,7 @@ import numba
 from llvmlite import binding
 from numba.core import config as numba_config
 
-from splinesdf.ground.linked import link_only, load_alone
+from splinesdf.ground.linked import keep_little
 
 config: Any = numba_config  # its names are made at run time
 njit: Any = numba.njit  # its stubs lack some of the settings
@@ -74,9 +74,7 @@ def _compiled(function: Function, linked: bool) -> Function:
         with _folder_for(function):
             compiled = njit(cache=True, no_cpython_wrapper=linked, **settings)(function)
         _keep(compiled, f"{module}.{function.__qualname__}", _stamp(module))
-        load_alone(compiled)
-        if linked:
-            link_only(compiled)
+        keep_little(compiled, linked)
     except (RuntimeError, OSError, AttributeError):
         # No folder to keep it in, no source to know it by, or another Numba inside.
         _note_once()

@@ -1,19 +1,25 @@
-"""How compiled code is loaded and linked, where Numba by itself does more than is needed.
+"""How compiled code is kept, loaded and linked, where Numba by itself does more than is needed.
 
-What a kernel calls is linked into its code, and need be no machine code by itself; and code that is
-loaded needs none of what makes code: the hundreds of modules in which Numba keeps its functions.
+What a kernel calls is linked into its code, and need be no machine code by itself. Code that is
+loaded needs nothing of what makes code: neither the hundreds of modules in which Numba keeps its
+functions nor the form of itself that others could link in.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import gc
+from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any, NoReturn
 
+from llvmlite import binding
 from numba.core import codegen as numba_codegen
-from numba.core.runtime.nrt import rtsys
+from numba.core.runtime import nrt
 
-Library: Any = numba_codegen.JITCodeLibrary  # Numba has no types to check
+# Numba has no types to check.
+Library: Any = numba_codegen.JITCodeLibrary
+runtime: Any = nrt
 
 
 class _Linked(Library):  # type: ignore[misc]
@@ -35,29 +41,70 @@ class _Linked(Library):  # type: ignore[misc]
         """Python's objects for code that runs: there is none."""
 
 
-def load_alone(compiled: Any) -> None:
-    """Let kept code be loaded without what it takes to compile."""
+class _Loaded(Library):  # type: ignore[misc]
+    """Machine code that was kept; what others would link in is read when they do."""
+
+    _shared_module: Any
+
+    @classmethod
+    def _unserialize(cls, codegen: Any, state: Any) -> Any:
+        self = codegen.create_library(state[0])
+        code, self._bitcode = state[2]
+        self.enable_object_caching()
+        self._set_compiled_object(code)
+        self._finalize_final_module()
+        return self
+
+    def _get_module_for_linking(self) -> Any:
+        if self._shared_module is None:
+            self._shared_module = binding.parse_bitcode(self._bitcode)
+        return self._shared_module
+
+    def get_pointer_to_function(self, name: str) -> Any:
+        return self._codegen._engine.get_function_address(name)
+
+
+def keep_little(compiled: Any, linked: bool) -> None:
+    """Let code be kept and loaded without what is not needed to run it.
+
+    Parameters
+    ----------
+    compiled : numba dispatcher
+    linked : bool
+        Whether compiled code alone is to call it.
+    """
+    _reach_runtime()
     kept = compiled._cache
-    guard = kept._guard_against_spurious_io_errors
+    guard, load, reduce = (
+        kept._guard_against_spurious_io_errors,
+        kept._load_overload,
+        kept._impl.reduce,
+    )
 
     def load_overload(signature: Any, context: Any) -> Any:
-        rtsys.initialize(context)
-        with guard():
-            return kept._load_overload(signature, context)
+        with guard(), _libraries(context.codegen(), _Linked if linked else _Loaded):
+            return load(signature, context)
 
-    kept.load_overload = load_overload
+    def reduced(result: Any) -> Any:
+        *rest, environments = reduce(result)
+        # To load one without objects is to import a module of Numba's that compiles.
+        return (*rest, tuple(one for one in environments if one.consts))
+
+    compile_ = compiled._compiler.compile
+
+    def compiled_anew(*arguments: Any) -> Any:
+        codegen = compiled.targetctx.codegen()
+        with _uncollected(), _libraries(codegen, _Linked if linked else codegen._library_class):
+            return compile_(*arguments)
+
+    kept.load_overload, kept._impl.reduce = load_overload, reduced
+    compiled._compiler.compile = compiled_anew
+    if linked:
+        _close(compiled)
 
 
-def link_only(compiled: Any) -> None:
-    """Let a function be called by compiled code alone."""
-    compiler, kept = compiled._compiler, compiled._cache
-
-    def as_linked(work: Callable[..., Any]) -> Callable[..., Any]:
-        def done(*arguments: Any) -> Any:
-            with _linked(compiled.targetctx.codegen()):
-                return work(*arguments)
-
-        return done
+def _close(compiled: Any) -> None:
+    """Let a function be called by compiled code alone: there is nothing that Python could call."""
 
     def add_overload(result: Any) -> None:
         compiled.overloads[tuple(result.signature.args)] = result
@@ -65,16 +112,33 @@ def link_only(compiled: Any) -> None:
     def refuse(*_: Any, **__: Any) -> NoReturn:
         raise TypeError(f"{compiled.__name__} is for kernels: it cannot be called from Python")
 
-    kept._load_overload = as_linked(kept._load_overload)
-    compiler.compile = as_linked(compiler.compile)
     compiled.add_overload, compiled._compile_for_args = add_overload, refuse
 
 
+@cache
+def _reach_runtime() -> None:
+    """Let code that is loaded find what makes and frees arrays."""
+    for name, address in runtime._nrt.c_helpers.items():
+        binding.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
+
+
 @contextmanager
-def _linked(codegen: Any) -> Iterator[None]:
-    """Let what is compiled meanwhile be of the kind above; Numba compiles one at a time."""
+def _uncollected() -> Iterator[None]:
+    """Collect no garbage meanwhile: Numba makes little, and the search took a tenth of the time."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+@contextmanager
+def _libraries(codegen: Any, kind: Any) -> Iterator[None]:
+    """Let libraries made meanwhile be of a kind; Numba makes them one at a time."""
     before = codegen._library_class
-    codegen._library_class = _Linked
+    codegen._library_class = kind
     try:
         yield
     finally:
