@@ -7,7 +7,6 @@ functions nor the form of itself that others could link in.
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -75,11 +74,8 @@ def keep_little(compiled: Any, linked: bool) -> None:
     """
     _reach_runtime()
     kept = compiled._cache
-    guard, load, reduce = (
-        kept._guard_against_spurious_io_errors,
-        kept._load_overload,
-        kept._impl.reduce,
-    )
+    guard, load = kept._guard_against_spurious_io_errors, kept._load_overload
+    reduce = kept._impl.reduce
 
     def load_overload(signature: Any, context: Any) -> Any:
         with guard(), _libraries(context.codegen(), _Linked if linked else _Loaded):
@@ -90,21 +86,18 @@ def keep_little(compiled: Any, linked: bool) -> None:
         # To load one without objects is to import a module of Numba's that compiles.
         return (*rest, tuple(one for one in environments if one.consts))
 
+    kept.load_overload, kept._impl.reduce = load_overload, reduced
+    if linked:
+        _link_only(compiled)
+
+
+def _link_only(compiled: Any) -> None:
+    """Let a function be called by compiled code alone: Python would find nothing to call."""
     compile_ = compiled._compiler.compile
 
-    def compiled_anew(*arguments: Any) -> Any:
-        codegen = compiled.targetctx.codegen()
-        with _uncollected(), _libraries(codegen, _Linked if linked else codegen._library_class):
+    def compiled_to_link(*arguments: Any) -> Any:
+        with _libraries(compiled.targetctx.codegen(), _Linked):
             return compile_(*arguments)
-
-    kept.load_overload, kept._impl.reduce = load_overload, reduced
-    compiled._compiler.compile = compiled_anew
-    if linked:
-        _close(compiled)
-
-
-def _close(compiled: Any) -> None:
-    """Let a function be called by compiled code alone: there is nothing that Python could call."""
 
     def add_overload(result: Any) -> None:
         compiled.overloads[tuple(result.signature.args)] = result
@@ -112,6 +105,7 @@ def _close(compiled: Any) -> None:
     def refuse(*_: Any, **__: Any) -> NoReturn:
         raise TypeError(f"{compiled.__name__} is for kernels: it cannot be called from Python")
 
+    compiled._compiler.compile = compiled_to_link
     compiled.add_overload, compiled._compile_for_args = add_overload, refuse
 
 
@@ -120,18 +114,6 @@ def _reach_runtime() -> None:
     """Let code that is loaded find what makes and frees arrays."""
     for name, address in runtime._nrt.c_helpers.items():
         binding.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
-
-
-@contextmanager
-def _uncollected() -> Iterator[None]:
-    """Collect no garbage meanwhile: Numba makes little, and the search took a tenth of the time."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
 
 
 @contextmanager
