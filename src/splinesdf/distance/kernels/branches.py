@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from splinesdf.distance.kernels.feet import derivatives
+from splinesdf.arclets.kernels.arclet import derivatives
 from splinesdf.distance.tables import Bent
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
