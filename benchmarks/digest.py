@@ -7,8 +7,7 @@ Distances, fits, contours and offsets over shapes of the tests, each as a hash o
     python -m benchmarks.digest | diff before.txt -
 
 Blocks of points depend on the number of processors, and the last bits of distances on the blocks,
-so that it runs on one. They may also differ in the process that compiles: after a change, run it
-once for nothing.
+so that it runs on one.
 """
 
 from __future__ import annotations

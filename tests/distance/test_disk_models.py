@@ -8,16 +8,22 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.arclets.kernels.nearest import closest_on, room_to_search
-from splinesdf.distance.kernels.branches import find_branches
-from splinesdf.distance.kernels.feet import fill_foot_table
+from splinesdf.arclets.kernels import nearest
+from splinesdf.arclets.kernels.nearest import room_to_search
+from splinesdf.distance.kernels import branches, feet
 from splinesdf.distance.tables import Bent
-from splinesdf.offsets.kernels.clearance import _least_bend
+from splinesdf.offsets.kernels import clearance
+from tests.compiled import from_python
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma
 
 # Arclets near a disk, as many as the enclosure looks at, and what a row of each table holds.
 MOST, NEAR, MODELS = 32, 9, (256, 12)
+
+closest_on = from_python(nearest.closest_on)
+find_branches = from_python(branches.find_branches)
+fill_foot_table = from_python(feet.fill_foot_table)
+least_bend = from_python(clearance._least_bend)
 
 
 def bump(turn: float, bend: float) -> ss.Shape:
@@ -136,7 +142,7 @@ def test_the_least_bend_of_level_sets(reverse: bool) -> None:
         x, y = (random.uniform(-1.5, 1.5, 2)).tolist()
         foot = foot_on(shape, j, x, y)
         length = 0.45 * foot[0] * random.random()
-        least = _least_bend(rows[j], foot, length)
+        least = least_bend(rows[j], foot, length)
         seen["start" if foot[3] <= 0.0 else "end" if foot[3] >= 1.0 else "inside"] += 1
         if foot[0] < 0.05 or least == -np.inf:
             continue
@@ -172,7 +178,7 @@ def test_beside_an_arclet_its_side_is_known(turn: float, side: float) -> None:
         """For a point on the outer side, so far ahead (radians) of the normal there."""
         c, s = math.cos(-side * (0.5 * math.pi - ahead)), math.sin(-side * (0.5 * math.pi - ahead))
         gx, gy = c * way[0] - s * way[1], s * way[0] + c * way[1]
-        return float(_least_bend(row, (1.0, gx, gy, t), 0.1))
+        return float(least_bend(row, (1.0, gx, gy, t), 0.1))
 
     mean = tangents.sum(axis=0) / np.linalg.norm(tangents.sum(axis=0))
     # arcsin 0.7 is 0.775: 0.795 ahead of the normal is as much as counts as beside.

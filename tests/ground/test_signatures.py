@@ -3,6 +3,7 @@
 Run by CI, and by ``python -m pytest -n 0 -m anew tests/ground``. One process answers three
 questions, as compiling everything takes a minute: does an index leave its array, is anything
 compiled for two signatures, and do kernels that count no references answer as their counted twins?
+A last one only loads what another has kept: it must find all that it needs, and answer the same.
 """
 
 from __future__ import annotations
@@ -45,6 +46,16 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     return tour("counted", NUMBA_BOUNDSCHECK="1", NUMBA_CACHE_DIR=folder)
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return str(tmp_path_factory.mktemp("kept"))
+
+
+@pytest.fixture(scope="module")
+def plain(folder: str) -> dict[str, Any]:
+    return tour(NUMBA_CACHE_DIR=folder)
+
+
 def test_nothing_is_compiled_twice(checked: dict[str, Any]) -> None:
     twice = {name: found for name, found in checked["signatures"].items() if len(found) > 1}
     assert not twice
@@ -55,8 +66,13 @@ def test_the_tour_runs_every_kernel(checked: dict[str, Any]) -> None:
     assert never == set()
 
 
-def test_counted_twins_answer_the_same(checked: dict[str, Any]) -> None:
-    plain = tour()
+def test_counted_twins_answer_the_same(checked: dict[str, Any], plain: dict[str, Any]) -> None:
     assert plain["results"].keys() == checked["results"].keys()
     for name, (_, total) in plain["results"].items():
         assert checked["results"][name][1] == pytest.approx(total, rel=ROUNDING, abs=ROUNDING), name
+
+
+def test_what_is_loaded_answers_the_same(folder: str, plain: dict[str, Any]) -> None:
+    loaded = tour(NUMBA_CACHE_DIR=folder)
+    assert loaded["compiled"] == []
+    assert loaded["results"] == plain["results"]

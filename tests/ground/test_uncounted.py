@@ -1,4 +1,7 @@
-"""Kernels that count no references: they make no array, return none, and call only their like."""
+"""Kernels that count no references: they make no array, return none, and call only their like.
+
+Nor has any of them an entry from Python.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import splinesdf
@@ -64,3 +68,8 @@ def test_they_return_no_array(name: str) -> None:
     returns = str(KERNELS[name].py_func.__annotations__["return"])
     for array in ("Floats", "Ints", "Bools", "Scratch", "ndarray"):
         assert array not in returns
+
+
+def test_they_cannot_be_called_from_python() -> None:
+    with pytest.raises(TypeError, match="kernels"):
+        KERNELS["arclets.kernels.arclet.point_on"](np.zeros((8, 1)), 0, 0.5)

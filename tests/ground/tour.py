@@ -4,7 +4,8 @@ Run by test_signatures.py in a process of its own, with an empty folder for comp
 
     python -m tests.ground.tour [counted]
 
-Prints JSON: for each result a digest and its numbers' sum, and the signatures of each kernel.
+Prints JSON: for each result a digest and its numbers' sum, the signatures of each kernel, and which
+were compiled rather than loaded.
 """
 
 from __future__ import annotations
@@ -82,13 +83,15 @@ def main() -> None:
             total += float(np.nansum(np.where(np.isfinite(array), array, 0.0)))
         assert name not in found, name
         found[name] = [digest.hexdigest()[:16], total]
-    signatures = {}
+    signatures, compiled = {}, []
     for module in list(sys.modules):
         if module.startswith("splinesdf.") and ".kernels." in module:
             for name, value in vars(sys.modules[module]).items():
                 if hasattr(value, "py_func") and value.__module__ == module:
                     signatures[f"{module}.{name}"] = list(map(str, value.signatures))
-    print(json.dumps({"results": found, "signatures": signatures}))
+                    if value.stats.cache_misses:
+                        compiled.append(f"{module}.{name}")
+    print(json.dumps({"results": found, "signatures": signatures, "compiled": compiled}))
 
 
 if __name__ == "__main__":

@@ -8,17 +8,12 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.arclets.kernels.arclet import point_on
-from splinesdf.arclets.kernels.nearest import closest_on, room_to_search
-from splinesdf.offsets.kernels.clearance import (
-    _is_nearer_at_its_ends,
-    _second_range,
-    _stays_nearer,
-    bend_range,
-)
-from splinesdf.offsets.kernels.gather import _apart
-from splinesdf.offsets.kernels.parallels import parallel_point
+from splinesdf.arclets.kernels import arclet, nearest
+from splinesdf.arclets.kernels.nearest import room_to_search
+from splinesdf.offsets.kernels import clearance, gather
+from splinesdf.offsets.kernels import parallels as _parallels
 from splinesdf.offsets.trimmed import parallels, parallels_at, walls_at
+from tests.compiled import from_python
 from tests.glyphs import glyphs
 from tests.mechanical import parts
 from tests.named_shapes import gamma
@@ -31,6 +26,14 @@ SHAPES = {
     "involute": lambda: parts()["involute gear"],
 }
 TRIALS, WALLS = 1000, 20
+point_on = from_python(arclet.point_on)
+closest_on = from_python(nearest.closest_on)
+parallel_point = from_python(_parallels.parallel_point)
+bend_range = from_python(clearance.bend_range)
+stays_nearer = from_python(clearance._stays_nearer)
+is_nearer_at_its_ends = from_python(clearance._is_nearer_at_its_ends)
+second_range = from_python(clearance._second_range)
+apart = from_python(gather._apart)
 
 
 class Stretch(NamedTuple):
@@ -85,7 +88,7 @@ def allowed(shape: ss.Shape, wall: int, foot: tuple, along: tuple, length: float
 
     def sure(gap: float) -> bool:
         row = shape.bends.rows[wall]
-        return _stays_nearer(shape.boundary.arcs, row, wall, foot, along, (gap, slope), length)
+        return stays_nearer(shape.boundary.arcs, row, wall, foot, along, (gap, slope), length)
 
     low, high = -10.0 * shape.size, 0.0
     if not sure(low):
@@ -140,7 +143,7 @@ def test_long_stretches_are_no_nearer_and_no_farther_than_is_said(name: str) -> 
                 continue
             found = distances(shape, wall, one.points)
             row, along = shape.bends.rows[wall], (tx, ty, *one.bends)
-            under, _, slack = _second_range(row, foot, along, one.length)
+            under, _, slack = second_range(row, foot, along, one.length)
             slope = abs(foot[1] * tx + foot[2] * ty) + slack
             if np.isfinite(under):
                 least = foot[0] - slope * one.away + 0.5 * under * one.away**2
@@ -149,7 +152,7 @@ def test_long_stretches_are_no_nearer_and_no_farther_than_is_said(name: str) -> 
                 sizes.append(float((found - least).max()) / one.length)
             ends = ((one.i, 0), one.m - one.half, one.m + one.half)
             most = (max(map(abs, one.bends)), one.length)
-            if _is_nearer_at_its_ends(levels, around, ends, wall, most, scratch):
+            if is_nearer_at_its_ends(levels, around, ends, wall, most, scratch):
                 nearer += 1
                 assert found.max() <= abs(distance) + around.grain + rounding
     assert sum(bounds) > 20
@@ -172,7 +175,7 @@ def test_nodes_of_the_tree_are_no_nearer_to_a_segment_than_is_said() -> None:
         way = ends[1] - ends[0]
         share = np.clip((points - ends[0]) @ way / (way @ way), 0.0, 1.0)
         real = np.hypot(*(points - ends[0] - share[:, None] * way).T).min()
-        bound = _apart(boundary.tree, node, (*ends[0], *ends[1]))
+        bound = apart(boundary.tree, node, (*ends[0], *ends[1]))
         assert bound <= real * (1.0 + 1e-12)
         said.append(bound > 0.5 * real)
     assert np.mean(said) > 0.3

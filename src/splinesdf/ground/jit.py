@@ -25,14 +25,23 @@ import numba
 from llvmlite import binding
 from numba.core import config as numba_config
 
+from splinesdf.ground.linked import keep_little
+
 config: Any = numba_config  # its names are made at run time
+njit: Any = numba.njit  # its stubs lack some of the settings
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # contract, reassoc, nsz, arcp let the loops use FMA and vector registers. The flags
 # nnan and ninf are left out on purpose: under them isnan(nan) is False, and a NaN
 # among the points would poison its neighbours instead of being answered by NaN.
 _SAFE_FASTMATH = {"contract", "reassoc", "nsz", "arcp"}
-_SETTINGS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": _SAFE_FASTMATH}
+# Nothing calls a kernel as C code would.
+_SETTINGS: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    "fastmath": _SAFE_FASTMATH,
+    "no_cfunc_wrapper": True,
+}
 _PACKAGE = Path(__file__).parents[1]
 _OWN = __name__.partition(".")[2]
 _IMPORT = re.compile(r"^\s*(?:from|import) splinesdf\.([\w.]+)", re.MULTILINE)
@@ -43,7 +52,7 @@ _OLD = 30 * 24 * 3600
 
 def kernel(function: Function) -> Function:
     """Compile a loop on arrays: kept on disk, without the GIL, no Python inside."""
-    return _compiled(function, {})
+    return _compiled(function, linked=False)
 
 
 def uncounted(function: Function) -> Function:
@@ -52,20 +61,24 @@ def uncounted(function: Function) -> Function:
     Its arrays belong to the kernel that calls it, so that counting references to them, at each
     call and for each array in each tuple, is in vain; without, whole kernels take half of the
     time. It may call only what is uncounted itself. Numba refuses to compile one that allocates.
+
+    Nor can it be called from Python: its code is that of the kernels which call it.
     """
-    return _compiled(function, {"_nrt": False})
+    return _compiled(function, linked=True)
 
 
-def _compiled(function: Function, settings: dict[str, Any]) -> Function:
+def _compiled(function: Function, linked: bool) -> Function:
     module = function.__module__.partition(".")[2]
+    settings = _SETTINGS | {"_nrt": not linked}
     try:
         with _folder_for(function):
-            compiled = numba.njit(cache=True, **_SETTINGS, **settings)(function)
+            compiled = njit(cache=True, no_cpython_wrapper=linked, **settings)(function)
         _keep(compiled, f"{module}.{function.__qualname__}", _stamp(module))
+        keep_little(compiled, linked)
     except (RuntimeError, OSError, AttributeError):
         # No folder to keep it in, no source to know it by, or another Numba inside.
         _note_once()
-        compiled = numba.njit(**_SETTINGS, **settings)(function)
+        compiled = njit(**settings)(function)
     return cast(Function, compiled)
 
 

@@ -1,4 +1,4 @@
-"""An arclet and a node of its tree, as many kernels read them: points, and least distances."""
+"""An arclet and a node of its tree, as many kernels read them: points, feet, least distances."""
 
 from __future__ import annotations
 
@@ -22,6 +22,29 @@ def point_on(arcs: Floats, i: int, t: float) -> tuple[float, float]:
         x = (x + arcs[i, k]) * t
         y = (y + arcs[i, k + 1]) * t
     return arcs[i, 3] + x, arcs[i, 4] + y
+
+
+@uncounted
+def derivatives(arcs: Floats, i: int, t: float) -> tuple[float, float, float, float, float, float]:
+    """An arclet minus its start, its first and its second derivative."""
+    x = y = dx = dy = ddx = ddy = 0.0
+    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
+        ddx, ddy = ddx * t + dx, ddy * t + dy
+        dx, dy = dx * t + x + arcs[i, k], dy * t + y + arcs[i, k + 1]
+        x, y = (x + arcs[i, k]) * t, (y + arcs[i, k + 1]) * t
+    return x, y, dx, dy, 2.0 * ddx, 2.0 * ddy
+
+
+@uncounted
+def foot_on_line(arcs: Floats, i: int, vx: float, vy: float) -> float:
+    """The parameter of a straight arclet's closest point; v leads from its start to the other."""
+    return float(min(max((vx * arcs[i, 5] + vy * arcs[i, 6]) * arcs[i, 7], 0.0), 1.0))
+
+
+@uncounted
+def below(node: int, first: int, end: int) -> tuple[int, int]:
+    """The two nodes under one that holds the arclets from one number up to another."""
+    return node + 1, node + 2 * ((first + end) // 2 - first)
 
 
 @uncounted

@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.kernels.arclet import point_on
+from splinesdf.arclets.kernels.arclet import below, point_on
 from splinesdf.arclets.tables import Interpolation, Met
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
@@ -77,8 +77,7 @@ def fill_crossings(
             continue
         if count_one < count_other:
             one, other = other, one
-        left = one + 1
-        right = one + 2 * ((ranges[one, 0] + ranges[one, 1]) // 2 - ranges[one, 0])
+        left, right = below(one, ranges[one, 0], ranges[one, 1])
         if one == other:
             stack[size, 0], stack[size, 1] = left, right
             stack[size + 1, 0], stack[size + 1, 1] = left, left

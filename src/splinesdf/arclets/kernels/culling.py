@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf.arclets.kernels.arclet import from_axis
+from splinesdf.arclets.kernels.arclet import below, from_axis, point_on
 from splinesdf.arclets.tables import Cells
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
@@ -177,8 +177,7 @@ def _cull(
         first, last = int(tree[node, 6]), int(tree[node, 7])
         length = abs(tree[node, 2]) + abs(tree[node, 3]) + 2.0 * tree[node, 5]
         if last - first > 1 and length > _NODE_SIZE * reach and size + total + 2 < MOST_KEPT:
-            stack[size] = node + 1
-            stack[size + 1] = node + 2 * ((first + last) // 2 - first)
+            stack[size], stack[size + 1] = below(node, first, last)
             size += 2
             continue
         place = total
@@ -210,7 +209,7 @@ def _near_point(
             if distance < best:
                 best, mx, my = distance, x - px, y - py
             continue
-        left, right = node + 1, node + 2 * ((first + last) // 2 - first)
+        left, right = below(node, first, last)
         ux, uy = from_axis(tree, left, x, y)
         vx, vy = from_axis(tree, right, x, y)
         if ux * ux + uy * uy < vx * vx + vy * vy:
@@ -229,8 +228,4 @@ def _about_nearest(arcs: Floats, i: int, x: float, y: float) -> tuple[float, flo
     squared = dx * dx + dy * dy
     share = (x - arcs[i, 3]) * dx + (y - arcs[i, 4]) * dy
     t = min(max(share / squared, 0.0), 1.0) if squared > 0.0 else 0.0
-    px = py = 0.0
-    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
-        px = (px + arcs[i, k]) * t
-        py = (py + arcs[i, k + 1]) * t
-    return arcs[i, 3] + px, arcs[i, 4] + py
+    return point_on(arcs, i, t)

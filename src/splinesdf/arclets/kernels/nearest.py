@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.kernels.arclet import SLACK, capsule_distance, point_on
+from splinesdf.arclets.kernels.arclet import SLACK, below, capsule_distance, foot_on_line, point_on
 from splinesdf.arclets.tables import Candidates, Cells, Feet, PassedOver, Scratch, Searched
 from splinesdf.ground.arrays import Bools, Floats
 from splinesdf.ground.jit import kernel, uncounted
@@ -168,8 +168,7 @@ def search(
                     smallest, found, found_at = squared, i, t
                     best = math.sqrt(squared)
             continue
-        left = node + 1
-        right = node + 2 * ((first + end) // 2 - first)
+        left, right = below(node, first, end)
         near_bound = capsule_distance(tree, left, px, py)
         far_bound = capsule_distance(tree, right, px, py)
         if near_bound > far_bound:
@@ -194,7 +193,7 @@ def _squared(arcs: Floats, i: int, t: float, px: float, py: float) -> float:
 def _closest_on_line(arcs: Floats, i: int, px: float, py: float) -> tuple[float, float]:
     """Squared distance to a straight arclet, and its parameter."""
     vx, vy = px - arcs[i, 3], py - arcs[i, 4]
-    t = min(max((vx * arcs[i, 5] + vy * arcs[i, 6]) * arcs[i, 7], 0.0), 1.0)
+    t = foot_on_line(arcs, i, vx, vy)
     vx -= t * arcs[i, 5]
     vy -= t * arcs[i, 6]
     return vx * vx + vy * vy, t

@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from splinesdf.arclets.kernels.arclet import foot_on_line, from_axis
 from splinesdf.arclets.tables import Candidates, Cells, Feet
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
@@ -139,7 +140,7 @@ def _try_line(
     """Put a straight arclet in where it is nearer than what has been found."""
     for p in range(points.shape[0]):
         x, y = points[p, 0] - arcs[i, 3], points[p, 1] - arcs[i, 4]
-        t = min(max((x * arcs[i, 5] + y * arcs[i, 6]) * arcs[i, 7], 0.0), 1.0)
+        t = foot_on_line(arcs, i, x, y)
         x -= t * arcs[i, 5]
         y -= t * arcs[i, 6]
         value = x * x + y * y
@@ -152,11 +153,7 @@ def _try_line(
 @uncounted
 def _bound(tree: Floats, node: int, x: float, y: float) -> float:
     """Nothing under the node is nearer than this."""
-    wx, wy = x - tree[node, 0], y - tree[node, 1]
-    dx, dy = tree[node, 2], tree[node, 3]
-    share = min(max((wx * dx + wy * dy) * tree[node, 4], 0.0), 1.0)
-    wx -= share * dx
-    wy -= share * dy
+    wx, wy = from_axis(tree, node, x, y)
     return float(math.sqrt(wx * wx + wy * wy) - tree[node, 5])
 
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from splinesdf.arclets.kernels.arclet import below, derivatives
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
 
@@ -129,8 +130,7 @@ def _winding(
             count += crossing
             on = on or near
         else:
-            nodes[size] = node + 1
-            nodes[size + 1] = node + 2 * ((first + end) // 2 - first)
+            nodes[size], nodes[size + 1] = below(node, first, end)
             size += 2
     return count, on
 
@@ -166,14 +166,7 @@ def _crossing(arcs: Floats, i: int, px: float, py: float, grain: float) -> tuple
         t = moved
         if step <= last_step:
             break
-    x = dx = dy = 0.0
-    for k in range(last, 3, -2):
-        dx = dx * t + x + arcs[i, k]
-        x = (x + arcs[i, k]) * t
-    y = 0.0
-    for k in range(last + 1, 4, -2):
-        dy = dy * t + y + arcs[i, k]
-        y = (y + arcs[i, k]) * t
+    x, _, dx, dy, _, _ = derivatives(arcs, i, t)
     beside = x + arcs[i, 3] - px
     # Across the tangent: where it is nearly level, rounding along the ray is far more.
     near = abs(beside * dy) <= grain * math.sqrt(dx * dx + dy * dy)

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from splinesdf.arclets.kernels.arclet import derivatives
 from splinesdf.arclets.thresholds import CUSP, SMOOTH
 from splinesdf.distance.kernels.feet import derivatives
 from splinesdf.distance.tables import Bent

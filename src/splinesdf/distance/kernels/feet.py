@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from splinesdf.arclets.kernels.arclet import derivatives, foot_on_line
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
 
@@ -67,10 +68,7 @@ def fill_foot_table(
             wx, wy = px - arcs[i, 1], py - arcs[i, 2]
         else:
             t = first / (first - last)
-            if degree == 1:
-                t = min(max((vx * arcs[i, 5] + vy * arcs[i, 6]) * arcs[i, 7], 0.0), 1.0)
-            else:
-                t = _foot(arcs, i, px, py, t)
+            t = foot_on_line(arcs, i, vx, vy) if degree == 1 else _foot(arcs, i, px, py, t)
             x, y, dx, dy, ddx, ddy = derivatives(arcs, i, t)
             speed = math.sqrt(dx * dx + dy * dy)
             wx, wy, tx, ty = vx - x, vy - y, dx / speed, dy / speed
@@ -131,17 +129,6 @@ def _lower_bound(arcs: Floats, i: int, vx: float, vy: float) -> float:
             least, arcs[i, s + k] + squared - 2.0 * (vx * arcs[i, x + k] + vy * arcs[i, y + k])
         )
     return math.sqrt(max(least - noise, 0.0))
-
-
-@uncounted
-def derivatives(arcs: Floats, i: int, t: float) -> tuple[float, float, float, float, float, float]:
-    """An arclet minus its start, its first and its second derivative."""
-    x = y = dx = dy = ddx = ddy = 0.0
-    for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
-        ddx, ddy = ddx * t + dx, ddy * t + dy
-        dx, dy = dx * t + x + arcs[i, k], dy * t + y + arcs[i, k + 1]
-        x, y = (x + arcs[i, k]) * t, (y + arcs[i, k + 1]) * t
-    return x, y, dx, dy, 2.0 * ddx, 2.0 * ddy
 
 
 @uncounted

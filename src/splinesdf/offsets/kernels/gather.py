@@ -10,7 +10,7 @@ from typing import cast
 
 import numpy as np
 
-from splinesdf.arclets.kernels.arclet import capsule_distance, point_on
+from splinesdf.arclets.kernels.arclet import below, capsule_distance, point_on
 from splinesdf.arclets.kernels.nearest import search
 from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
@@ -56,8 +56,7 @@ def gather(
             continue
         lo, hi = int(tree[node, 6]), int(tree[node, 7])
         if hi - lo > 1:
-            nodes[size] = node + 2 * ((lo + hi) // 2 - lo)
-            nodes[size + 1] = node + 1
+            nodes[size + 1], nodes[size] = below(node, lo, hi)
             size += 2
             continue
         if place[lo, 1] == first and (place[lo, 0] - begin) % place[lo, 2] < length:

@@ -52,7 +52,8 @@ def parallel_point(
     degree = int(arcs[i, 0])
     x = y = dx = dy = ddx = ddy = 0.0
     for k in range(3 + 2 * degree, 3, -2):
-        # ddx is half of the second derivative
+        # As `arclet.derivatives`, but ddx is half of the second: to call that from here changes the
+        # last bits of offsets.
         ddx, ddy = ddx * t + dx, ddy * t + dy
         dx, dy = dx * t + x + arcs[i, k], dy * t + y + arcs[i, k + 1]
         x, y = (x + arcs[i, k]) * t, (y + arcs[i, k + 1]) * t
