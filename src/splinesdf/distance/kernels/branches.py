@@ -11,7 +11,6 @@ import numpy as np
 
 from splinesdf.arclets.kernels.arclet import derivatives
 from splinesdf.arclets.thresholds import CUSP, SMOOTH
-from splinesdf.distance.kernels.feet import derivatives
 from splinesdf.distance.tables import Bent
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
