@@ -174,8 +174,10 @@ def _nothing(drawing: _Drawing, notes: Sequence[str]) -> str:
     lines = drawing.strokes or drawing.unpainted
     if lines:
         what = "strokes" if drawing.strokes else "outlines without paint"
+        rest = [f"; {note}" for note in notes if note.startswith("left out") and drawing.strokes]
         return (
-            f"expected elements that are filled, got only {what} ({_counted(lines)}), which fill "
+            f"expected elements that are filled, got only {what} ({_counted(lines)}"
+            f"{''.join(rest)[:200]}), which fill "
             "nothing: stroke='centre' (--stroke centre) reads the closed lines"
         )
     more = f" ({'; '.join(notes)})" if notes else ""
