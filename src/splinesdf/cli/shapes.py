@@ -47,9 +47,23 @@ _READING: tuple[Callable[[Command], Command], ...] = (
     ),
     click.option("--layer", "layers", multiple=True, help="DXF: this layer; may be given again."),
     click.option("--gap", type=float, help="DXF: join ends so far apart.  [1e-6 of the size]"),
+    click.option("--text", help="Fonts: what to read."),
+    click.option("--size", type=float, help="Fonts: height of an em.  [default: the font's units]"),
+    click.option("--axis", "location", multiple=True, help="Variable fonts: wght=650; again."),
     click.option("--columns", nargs=2, help="Tables: the columns of x and y, names or numbers."),
 )
-_NAMES = ("close", "fill", "stroke", "ignore", "layers", "gap", "columns")
+_NAMES = (
+    "close",
+    "fill",
+    "stroke",
+    "ignore",
+    "layers",
+    "gap",
+    "columns",
+    "text",
+    "size",
+    "location",
+)
 
 
 def reading_options(command: Command) -> Command:
@@ -61,12 +75,21 @@ def reading_options(command: Command) -> Command:
         if reading["columns"]:
             columns = reading["columns"]
             reading["columns"] = tuple(int(one) if one.isdigit() else one for one in columns)
+        reading["location"] = dict(map(_axis, reading["location"])) or None
         command(reading=reading, **given)
 
     bundled: Command = functools.wraps(command)(read_as)
     for option in _READING:
         bundled = option(bundled)
     return bundled
+
+
+def _axis(text: str) -> tuple[str, float]:
+    tag, sign, value = text.partition("=")
+    try:
+        return tag, float(value if sign else "")
+    except ValueError as error:
+        raise ss.InputError(f"expected an axis such as wght=650, got {text!r:.40}") from error
 
 
 def shape_options(command: Command) -> Command:

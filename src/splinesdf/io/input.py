@@ -33,7 +33,8 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
         ``.svg`` or ``.svgz`` (what elements fill, in user units, y pointing down), ``.dxf`` (closed
         outlines of the model space), ``.geojson`` or ``.wkt`` (the union of polygons), ``.json``
         (formulas, or GeoJSON), ``.csv`` (corners of polygons, a blank line between two) or
-        ``.dat`` (airfoils by Selig or Lednicer, and the same).
+        ``.dat`` (airfoils by Selig or Lednicer, and the same); ``.ttf``, ``.otf``, ``.woff``,
+        ``.woff2`` or ``.ttc`` (a text in a font).
 
     Other Parameters
     ----------------
@@ -59,6 +60,12 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     columns : pair of str or int, optional
         Of a table: the columns of x and y, by name or number from 0. Those named x and y unless
         given, or the only two.
+    text : str, optional
+        What is read from a font.
+    size : float, optional
+        The height of an em of a font; its own units unless given.
+    location : mapping of str to float, optional
+        Where on the axes of a variable font, as ``{"wght": 650}``.
 
     Returns
     -------

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from splinesdf.io.readers.airfoils import airfoil_shape
 from splinesdf.io.readers.dxf import dxf_shape
+from splinesdf.io.readers.fonts import font_shape
 from splinesdf.io.readers.formulas import json_shape
 from splinesdf.io.readers.maps import geojson_shape, wkt_shape
 from splinesdf.io.readers.points import points_shape
@@ -24,4 +25,5 @@ READERS: dict[str, Reader] = {
     ".svg": svg_shape,
     ".svgz": svg_shape,
     ".wkt": wkt_shape,
+    **dict.fromkeys((".otf", ".ttc", ".ttf", ".woff", ".woff2"), font_shape),
 }

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, TypedDict
 
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import positive
+from splinesdf.ground.arrays import finite, positive
 from splinesdf.ground.options import check_known, with_options
 
 STROKES = ("none", "centre")
@@ -49,6 +49,9 @@ class Options(NamedTuple):
     layers: tuple[str, ...] | None = None
     gap: float | None = None
     columns: tuple[str | int, str | int] | None = None
+    text: str | None = None
+    size: float | None = None
+    location: Mapping[str, float] | None = None
 
 
 class ReadOptions(TypedDict, total=False):
@@ -61,6 +64,9 @@ class ReadOptions(TypedDict, total=False):
     layers: str | Sequence[str] | None
     gap: float | None
     columns: Sequence[str | int] | None
+    text: str | None
+    size: float | None
+    location: Mapping[str, float] | None
 
 
 DEFAULTS: ReadOptions = {
@@ -71,6 +77,9 @@ DEFAULTS: ReadOptions = {
     "layers": None,
     "gap": None,
     "columns": None,
+    "text": None,
+    "size": None,
+    "location": None,
 }
 read_options = with_options(ReadOptions, DEFAULTS)
 
@@ -78,7 +87,8 @@ read_options = with_options(ReadOptions, DEFAULTS)
 def checked_options(given: ReadOptions) -> Options:
     """The options, or an `InputError`."""
     check_known("read", given, ReadOptions)
-    fill, stroke, gap = given.get("fill"), given.get("stroke"), given.get("gap")
+    fill, stroke = given.get("fill"), given.get("stroke")
+    gap, size = given.get("gap"), given.get("size")
     if fill is not None and fill not in ("nonzero", "evenodd"):
         raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r:.60}")
     if stroke is not None and stroke not in STROKES:
@@ -103,7 +113,24 @@ def checked_options(given: ReadOptions) -> Options:
         None if layers is None else _names(layers, "layers"),
         None if gap is None else positive(gap, "gap"),
         None if columns is None else (columns[0], columns[1]),
+        _text(given.get("text")),
+        None if size is None else positive(size, "size"),
+        _location(given.get("location")),
     )
+
+
+def _text(value: str | None) -> str | None:
+    if value is not None and not isinstance(value, str):
+        raise InputError(f"expected text as a text, got {value!r:.60}")
+    return value
+
+
+def _location(value: Mapping[str, float] | None) -> dict[str, float] | None:
+    if value is None:
+        return None
+    if not isinstance(value, Mapping):
+        raise InputError(f"expected a location such as {{'wght': 650}}, got {value!r:.60}")
+    return {str(axis): finite(number, str(axis)[:20]) for axis, number in value.items()}
 
 
 def _names(value: str | Sequence[str], what: str) -> tuple[str, ...]:

@@ -1,0 +1,226 @@
+"""Fonts: a text as a shape, each glyph filled by the rule nonzero, y pointing up.
+
+    text ──shaping: glyphs and places──> outlines at a variable font's location ──> regions, united
+
+fontTools reads outlines; uharfbuzz, if it is installed, places glyphs as programs for writing do,
+with kerning and ligatures. Without it glyphs follow one another by their widths, and a note says
+so.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from splinesdf.errors import InputError, MissingExtraError
+from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.source import Options, Source
+from splinesdf.shapes.region import Loops, region
+from splinesdf.shapes.shape import Shape
+
+# Characters of a text. More: a novel by mistake; each glyph is a dozen curves.
+_MOST_CHARACTERS = 10_000
+_COLORED = {
+    "COLR": "layers of colors",
+    "SVG ": "SVG drawings",
+    "CBDT": "pictures",
+    "sbix": "pictures",
+}
+
+
+class _Placed(NamedTuple):
+    """A glyph and where its origin is, in font units."""
+
+    name: str
+    x: float
+    y: float
+
+
+def font_shape(source: Source, options: Options) -> Shape:
+    """The text in the font."""
+    if options.text is None:
+        raise InputError("expected a text to read from a font: pass text='...' (--text)")
+    if len(options.text) > _MOST_CHARACTERS:
+        raise InputError(
+            f"expected a text of up to {_MOST_CHARACTERS:,} characters, got {len(options.text):,}"
+        )
+    with _readable():
+        font = _opened(source.content)
+        loops, notes = _loops(font, source.content, options)
+    if not loops:
+        raise InputError(f"expected a text with something to see, got {options.text[:40]!r}")
+    return Shape.from_pieces(loops, fill="nonzero", name=options.text[:40], notes=notes, once=False)
+
+
+@contextmanager
+def _readable() -> Iterator[None]:
+    """An `InputError` for whatever a damaged font makes its reader run into."""
+    try:
+        yield
+    except (InputError, MissingExtraError):
+        raise
+    except Exception as error:
+        raise InputError(
+            f"expected a font, got one that cannot be read ({type(error).__name__})"
+        ) from error
+
+
+def _loops(font: Any, content: bytes, options: Options) -> tuple[Loops, tuple[str, ...]]:
+    """The glyphs of the text, inside on the left, and what is to be said."""
+    assert options.text is not None
+    location = _location(font, options.location)
+    _check_characters(font, options.text)
+    placed, notes = _placed(font, content, options.text, location)
+    _check_colors(font, {glyph.name for glyph in placed})
+    glyphs = font.getGlyphSet(location=location)
+    units = float(font["head"].unitsPerEm)
+    scale = 1.0 if options.size is None else options.size / units
+    regions: dict[str, Loops] = {}
+    loops: Loops = []
+    for name, x, y in placed:
+        if name not in regions:
+            regions[name] = region(_outline(glyphs, name), options.fill or "nonzero")
+        shift = np.array([x, y])
+        loops += [[scale * (piece + shift) for piece in loop] for loop in regions[name]]
+    return loops, notes
+
+
+def _opened(content: bytes) -> Any:
+    try:
+        from fontTools.ttLib import TTFont, TTLibError
+    except ImportError as error:
+        raise MissingExtraError(
+            "reading fonts needs fontTools: pip install 'splinesdf[fonts]'"
+        ) from error
+    try:
+        font = TTFont(io.BytesIO(content), fontNumber=0, lazy=True)
+        font["head"], font["cmap"], font["hmtx"]
+    except ImportError as error:
+        raise MissingExtraError(
+            "reading woff2 fonts needs brotli: pip install 'splinesdf[fonts]'"
+        ) from error
+    except (TTLibError, KeyError) as error:
+        text = " ".join(str(error).split())
+        raise InputError(f"expected a font, got a damaged one or none: {text[:80]}") from error
+    if not any(table in font for table in ("glyf", "CFF ", "CFF2")):
+        kinds = [words for table, words in _COLORED.items() if table in font]
+        raise InputError(f"expected a font with outlines, got {kinds[0] if kinds else 'none'}")
+    return font
+
+
+def _location(font: Any, asked: Mapping[str, float] | None) -> dict[str, float]:
+    """The location of a variable font, or an `InputError`."""
+    if not asked:
+        return {}
+    axes = {axis.axisTag: axis for axis in font["fvar"].axes} if "fvar" in font else {}
+    for tag, value in asked.items():
+        if tag not in axes:
+            known = ", ".join(axes) or "none, as the font is not variable"
+            raise InputError(f"expected axes of {known}, got {tag!r:.20}")
+        low, high = axes[tag].minValue, axes[tag].maxValue
+        if not low <= value <= high:
+            raise InputError(f"expected {tag} from {low:g} to {high:g}, got {value:g}")
+    return dict(asked)
+
+
+def _check_characters(font: Any, text: str) -> None:
+    known = font.getBestCmap() or {}
+    missing = sorted({c for c in text if ord(c) not in known and not c.isspace()})
+    if missing:
+        raise InputError(f"the font has no glyph for {', '.join(map(repr, missing[:5]))}")
+
+
+def _check_colors(font: Any, names: set[str]) -> None:
+    """Refuse glyphs that are drawn in colors: their outline may be anything."""
+    if "COLR" not in font:
+        return
+    table = font["COLR"]
+    if table.version == 0:
+        colored = names & set(table.ColorLayers)
+    else:
+        records = getattr(table.table, "BaseGlyphList", None)
+        colored = names & {r.BaseGlyph for r in records.BaseGlyphPaintRecord} if records else set()
+    if colored:
+        raise InputError(f"expected glyphs of one color, got {min(colored)!r} in layers of colors")
+
+
+def _placed(
+    font: Any, content: bytes, text: str, location: dict[str, float]
+) -> tuple[list[_Placed], tuple[str, ...]]:
+    """Glyphs in order, line under line, and what is to be said."""
+    head = font["hhea"]
+    below = float(head.ascent - head.descent + head.lineGap)
+    lines = text.replace("\r\n", "\n").split("\n")
+    try:
+        import uharfbuzz
+    except ImportError:
+        glyphs, known = font.getGlyphSet(location=location), font.getBestCmap()
+        placed = []
+        for number, line in enumerate(lines):
+            x = 0.0
+            for character in line:
+                name = known.get(ord(character), known.get(32))
+                if name is None:
+                    continue
+                placed.append(_Placed(name, x, -number * below))
+                x += float(glyphs[name].width)
+        note = "no kerning or ligatures: glyphs are placed by their widths, as uharfbuzz is missing"
+        return placed, (note,) if len(text) > 1 else ()
+    order = font.getGlyphOrder()
+    shaper = uharfbuzz.Font(uharfbuzz.Face(_unpacked(font, content)))
+    if location:
+        shaper.set_variations(location)
+    placed = []
+    for number, line in enumerate(lines):
+        buffer = uharfbuzz.Buffer()
+        buffer.add_str(line)
+        buffer.guess_segment_properties()
+        uharfbuzz.shape(shaper, buffer)
+        x, y = 0.0, -number * below
+        for info, at in zip(buffer.glyph_infos or [], buffer.glyph_positions or [], strict=True):
+            placed.append(_Placed(order[info.codepoint], x + at.x_offset, y + at.y_offset))
+            x, y = x + at.x_advance, y + at.y_advance
+    return placed, ()
+
+
+def _unpacked(font: Any, content: bytes) -> bytes:
+    """The font as HarfBuzz reads it, which knows no packed ones."""
+    if content[:4] not in (b"wOFF", b"wOF2"):
+        return content
+    plain = io.BytesIO()
+    flavor, font.flavor = font.flavor, None
+    font.save(plain, reorderTables=False)
+    font.flavor = flavor
+    return plain.getvalue()
+
+
+def _outline(glyphs: Any, name: str) -> Loops:
+    """A glyph's contours, components and implied points resolved."""
+    from fontTools.pens.basePen import BasePen
+
+    loops: Loops = []
+
+    class Pen(BasePen):  # type: ignore[misc]
+        def _moveTo(self, point: tuple[float, float]) -> None:  # noqa: N802
+            loops.append([])
+
+        def _lineTo(self, point: tuple[float, float]) -> None:  # noqa: N802
+            self._piece(point)
+
+        def _curveToOne(self, *points: tuple[float, float]) -> None:  # noqa: N802
+            self._piece(*points)
+
+        def _qCurveToOne(self, *points: tuple[float, float]) -> None:  # noqa: N802
+            self._piece(*points)
+
+        def _piece(self, *points: tuple[float, float]) -> None:
+            piece: Floats = np.array([self._getCurrentPoint(), *points], dtype=np.float64)
+            if np.any(piece != piece[0]):
+                loops[-1].append(piece)
+
+    glyphs[name].draw(Pen(glyphs))
+    return [loop for loop in loops if loop]
