@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 import splinesdf as ss
-from splinesdf.shapes.shape import evaluate_bezier
+from splinesdf.arclets.points import evaluate_bezier
 
 DEVIATION = 1e-6
 SAMPLES = 100_000  # of the kd-tree

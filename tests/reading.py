@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 import splinesdf as ss
-from splinesdf.shapes.shape import evaluate_bezier
+from splinesdf.arclets.points import evaluate_bezier
 
 GAUSS = np.polynomial.legendre.leggauss(8)  # exact up to degree 15, as x dy - y dx of degree 7 is
 ROUNDING = 1e-12

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.arclets.points import evaluate_bezier
 from splinesdf.distance.candidates import closest_candidates
 from splinesdf.ground.blocks import processors
-from splinesdf.shapes.shape import evaluate_bezier
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 import splinesdf as ss
-from splinesdf.shapes.shape import evaluate_bezier
+from splinesdf.arclets.points import evaluate_bezier
 from splinesdf.shapes.sources.compiled import (
     compile_arc,
     compile_curve,

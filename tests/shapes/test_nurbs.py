@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 import splinesdf as ss
-from splinesdf.shapes.shape import evaluate_bezier
+from splinesdf.arclets.points import evaluate_bezier
 from splinesdf.shapes.sources.nurbs import nurbs_pieces
 from tests.examples import examples
 

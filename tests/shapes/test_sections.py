@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import splinesdf as ss
-from splinesdf.shapes.shape import evaluate_bezier
+from splinesdf.arclets.points import evaluate_bezier
 from splinesdf.shapes.sources.compiled import compile_curve
 from splinesdf.shapes.sources.formula import parse_curve
 

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import splinesdf as ss
+from splinesdf.arclets.points import evaluate_bezier
 from splinesdf.errors import InputError
-from splinesdf.shapes.shape import evaluate_bezier
 from splinesdf.shapes.sources.svg_path import closing_piece, parse_numbers, parse_path
 
 DATA = Path(__file__).parents[1] / "data"

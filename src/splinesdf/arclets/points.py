@@ -69,3 +69,12 @@ def bezier_points(control: Floats, t: Floats) -> tuple[Floats, Floats]:
         points = (1.0 - t) * points[..., :-1, :] + t * points[..., 1:, :]
     start, end = points[..., 0, :], points[..., 1, :]
     return start + t[..., 0] * (end - start), degree * (end - start)
+
+
+def evaluate_bezier(control: Floats, parameters: Floats) -> Floats:
+    """Points of a Bézier piece by de Casteljau: (degree + 1, 2), (n,) -> (n, 2)."""
+    t = parameters[:, None, None]
+    points = np.broadcast_to(control, (len(parameters), *control.shape))
+    while points.shape[1] > 1:
+        points = (1.0 - t) * points[:, :-1] + t * points[:, 1:]
+    return points[:, 0]

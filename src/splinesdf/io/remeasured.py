@@ -22,13 +22,14 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from splinesdf.arclets.points import evaluate_bezier
 from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.paths import as_path
 from splinesdf.io.enclosed import Sides, check_sides, flattened
 from splinesdf.io.writers.options import GCODE
-from splinesdf.shapes.shape import Shape, evaluate_bezier
+from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.svg_path import parse_path
 
 # Samples on each segment, and around each suspect in each of the rounds that zoom in by four: the

@@ -14,17 +14,22 @@ from splinesdf.arclets.curvature import bends
 from splinesdf.arclets.cutting import build_arclets
 from splinesdf.arclets.joints import joints
 from splinesdf.arclets.kinds import kinds
+from splinesdf.arclets.points import evaluate_bezier
 from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
+from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
 from splinesdf.shapes.boundary import filled_boundary, touching_of
 from splinesdf.shapes.loops import closed_loops
 from splinesdf.shapes.repeats import drawn_once, repeats_note
-from splinesdf.shapes.sources.compiled import compile_curve, periodic_cubic_spline, polygon
+from splinesdf.shapes.sources.compiled import compile_curve, point_loops
+from splinesdf.shapes.sources.conics import contour_loops
 from splinesdf.shapes.sources.formula import parse_curve
+from splinesdf.shapes.sources.geojson import polygons_of
 from splinesdf.shapes.sources.nurbs import nurbs_pieces
+from splinesdf.shapes.sources.sections import compile_sections
 from splinesdf.shapes.sources.svg_path import parse_path
 
 Fill = Literal["nonzero", "evenodd"]
@@ -184,18 +189,7 @@ class Shape:
         InputError
             If a formula cannot be used; the message names the section.
         """
-        loop: list[Floats] = []
-        for number, section in enumerate(sections, 1):
-            try:
-                x, y, t = section
-            except (TypeError, ValueError) as error:
-                raise InputError(
-                    f"section {number}: expected (x, y, (start, stop)), got {str(section)[:60]!r}"
-                ) from error
-            try:
-                loop += compile_curve(parse_curve(x, y, t))
-            except InputError as error:
-                raise InputError(f"section {number}: {error}") from error
+        loop = compile_sections(sections)
         return cls.from_pieces([loop], fill=fill, close=close, name=name)
 
     @classmethod
@@ -245,20 +239,50 @@ class Shape:
 
     @classmethod
     def from_points(
-        cls, points: ArrayLike, *, smooth: bool = False, fill: str | None = None, name: str = ""
+        cls,
+        points: ArrayLike | Sequence[ArrayLike],
+        *,
+        smooth: bool = False,
+        fill: str | None = None,
+        name: str = "",
     ) -> Shape:
-        """One closed polygon, or with ``smooth=True`` the periodic C² cubic through its corners.
+        """Closed polygons, or with ``smooth=True`` the periodic C² cubics through their corners.
 
         Parameters
         ----------
-        points : array_like, shape (n, 2)
+        points : array_like, shape (n, 2), or several of these
             In order; the last is joined to the first. Repeated neighbours are dropped.
         """
-        corners = as_points(points)
-        if corners.ndim != 2:
-            raise InputError(f"expected points of shape (n, 2), got shape {corners.shape}")
-        loop = periodic_cubic_spline(corners) if smooth else polygon(corners)
-        return cls.from_pieces([loop], fill=fill, name=name)
+        loops = point_loops(points, smooth=smooth)
+        return cls.from_pieces(loops, fill=fill, name=name)
+
+    @classmethod
+    def from_contours(cls, contours: Iterable[Contour], *, name: str = "") -> Shape:
+        """The region that closed contours of one level enclose, as those of an offset do.
+
+        So an offset can be offset again: outward and back inward closes gaps, inward and back
+        outward takes off what is thin. Lines and parabolas are exact, other conics to a few units
+        in the last place.
+        """
+        given = list(contours)
+        y_down = any(getattr(contour, "y_down", False) for contour in given)
+        return cls.from_pieces(contour_loops(given), name=name, y_down=y_down, once=False)
+
+    @classmethod
+    def from_shapely(cls, geometry: object, *, name: str = "") -> Shape:
+        """The union of all polygons of a geometry of Shapely, or of its like.
+
+        Parameters
+        ----------
+        geometry : object
+            A GeoJSON object, or one with a ``__geo_interface__``. Points and lines are left out,
+            and named in the notes.
+        """
+        found = polygons_of(geometry)
+        loops, fill = found.united(None)
+        return cls.from_pieces(
+            loops, fill=fill, close=True, name=name, notes=found.notes(), once=False
+        )
 
     @classmethod
     def from_svg_path(
@@ -384,15 +408,6 @@ class Shape:
 
     def _is_line(self, index: int) -> bool:
         return bool(self.starts[index + 1] - self.starts[index] == 2)
-
-
-def evaluate_bezier(control: Floats, parameters: Floats) -> Floats:
-    """Points of a Bézier piece by de Casteljau: (degree + 1, 2), (n,) -> (n, 2)."""
-    t = parameters[:, None, None]
-    points = np.broadcast_to(control, (len(parameters), *control.shape))
-    while points.shape[1] > 1:
-        points = (1.0 - t) * points[:, :-1] + t * points[:, 1:]
-    return points[:, 0]
 
 
 def _fill_rule(fill: str) -> Fill:

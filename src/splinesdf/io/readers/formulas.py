@@ -11,11 +11,12 @@ from typing import Any
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
-from splinesdf.io.readers.maps import GEOJSON_TYPES, geojson_shape
+from splinesdf.io.readers.maps import geojson_shape
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import compile_curve
 from splinesdf.shapes.sources.formula import parse_curve
+from splinesdf.shapes.sources.geojson import TYPES
 
 _CURVE = ("x", "y", "t")
 _WHOLE = ("fill", "name")
@@ -29,7 +30,7 @@ def json_shape(source: Source, options: Options) -> Shape:
         content = json.loads(source.text(), parse_int=float)
     except (ValueError, RecursionError) as error:
         raise InputError(f"expected formulas as JSON, got something else: {error}") from error
-    if isinstance(content, dict) and content.get("type") in GEOJSON_TYPES:
+    if isinstance(content, dict) and content.get("type") in TYPES:
         return geojson_shape(source, options)
     return formula_shape(content, source.stem, options)
 

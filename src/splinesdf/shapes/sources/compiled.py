@@ -353,3 +353,15 @@ def _solve_cyclic(diagonal: Floats, after: Floats, right: Floats) -> Floats:
     )
     solution = np.array(plain) - share * np.array(change)
     return np.column_stack([solution.real, solution.imag])
+
+
+def point_loops(points: object, *, smooth: bool) -> list[list[Floats]]:
+    """Closed polygons through points (n, 2) or several of these, or smooth curves through them."""
+    several = isinstance(points, list | tuple) and len(points) and np.ndim(points[0]) == 2
+    loops = []
+    for each in points if several else [points]:  # type: ignore[attr-defined]
+        corners = as_points(each)
+        if corners.ndim != 2:
+            raise InputError(f"expected points of shape (n, 2), got shape {corners.shape}")
+        loops.append(periodic_cubic_spline(corners) if smooth else polygon(corners))
+    return loops

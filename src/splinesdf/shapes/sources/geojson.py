@@ -1,0 +1,116 @@
+"""Polygons of GeoJSON objects, and of whatever has a ``__geo_interface__``."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from numbers import Real
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
+from splinesdf.shapes.region import Loops, region
+from splinesdf.shapes.sources.compiled import polygon
+
+TYPES = frozenset(
+    ("FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
+     "MultiPoint", "LineString", "MultiLineString", "LinearRing")
+)  # fmt: skip
+# Geometries within geometries. More: Python's calls run out; nothing that is drawn has more.
+_DEEPEST = 100
+
+
+class Polygons(NamedTuple):
+    """Polygons, and what is found beside them."""
+
+    rings: list[list[Floats]]  # of each polygon, its outline first
+    left_out: Counter[str]
+    has_z: list[bool]  # one True as soon as a point has more than two numbers
+
+    def notes(self) -> tuple[str, ...]:
+        """One line for each kind of thing that a shape cannot hold."""
+        notes = []
+        if self.left_out:
+            words = ", ".join(f"{count} {name}" for name, count in self.left_out.items())
+            notes.append(f"left out: {words}")
+        if self.has_z:
+            notes.append("left out: the third coordinate of points")
+        return tuple(notes)
+
+    def united(self, fill: str | None) -> tuple[Loops, str]:
+        """Loops around the union of all, and their rule. Holes are so by where they stand.
+
+        Raises
+        ------
+        InputError
+            If there is no polygon.
+        """
+        if not self.rings:
+            words = ", ".join(f"{count} {name}" for name, count in self.left_out.items())
+            raise InputError(f"expected polygons, got {words or 'none'}")
+        parts = [[polygon(ring) for ring in rings] for rings in self.rings]
+        rule = fill or "evenodd"
+        if len(parts) == 1:
+            return parts[0], rule
+        return [loop for part in parts for loop in region(part, rule)], "nonzero"
+
+
+def polygons_of(value: Any) -> Polygons:
+    """The polygons of a GeoJSON object, or of an object with a ``__geo_interface__``."""
+    found = Polygons([], Counter(), [])
+    _collect(getattr(value, "__geo_interface__", value), found, 0)
+    return found
+
+
+def _collect(value: Any, found: Polygons, depth: int) -> None:
+    if depth > _DEEPEST:
+        raise InputError(f"expected geometries nested up to {_DEEPEST} deep, got deeper ones")
+    if value is None:
+        return
+    kind = value.get("type") if isinstance(value, Mapping) else None
+    if not isinstance(kind, str) or kind not in TYPES:
+        raise InputError(f"expected a GeoJSON object, got one of type {kind!r:.40}")
+    if kind == "FeatureCollection":
+        for feature in _list(value, "features"):
+            _collect(feature, found, depth + 1)
+    elif kind == "Feature":
+        _collect(value.get("geometry"), found, depth + 1)
+    elif kind == "GeometryCollection":
+        for geometry in _list(value, "geometries"):
+            _collect(geometry, found, depth + 1)
+    elif kind == "Polygon":
+        add_polygon(_list(value, "coordinates"), found)
+    elif kind == "MultiPolygon":
+        for rings in _list(value, "coordinates"):
+            add_polygon(rings, found)
+    else:
+        found.left_out[kind] += 1
+
+
+def _list(value: Mapping[str, Any], key: str) -> Sequence[Any]:
+    result = value.get(key)
+    if not isinstance(result, list | tuple):
+        raise InputError(f"expected a list of {key} in a {value['type']}, got none")
+    return result
+
+
+def add_polygon(rings: Any, found: Polygons) -> None:
+    """Add a polygon's rings, its outline first."""
+    if not isinstance(rings, list | tuple):
+        raise InputError("expected a list of rings in a Polygon, got something else")
+    corners = [_ring(ring, found) for ring in rings]
+    if corners:
+        found.rings.append(corners)
+
+
+def _ring(ring: Any, found: Polygons) -> Floats:
+    points = isinstance(ring, list | tuple) and all(isinstance(p, list | tuple) for p in ring)
+    if not points:
+        raise InputError("expected a ring of points, got something else")
+    if not all(len(p) >= 2 and all(isinstance(x, Real) for x in p[:2]) for p in ring):
+        raise InputError("expected points of at least two numbers, got others")
+    if any(len(point) > 2 for point in ring) and not found.has_z:
+        found.has_z.append(True)
+    return np.array([point[:2] for point in ring], dtype=np.float64).reshape(-1, 2)
