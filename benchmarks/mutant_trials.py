@@ -33,10 +33,11 @@ SEEN_BY = {
     "splines": (("fits",), ("splines",)),
 }
 # Seconds of CPU for a digest and for one test. Beyond, a mutant has no end, which is seen as well.
-PATIENCE = 100
+PATIENCE = 30
 # Differences by no more than this share of the largest number are the last bits'.
 ROUNDING = 1e-12
 MEMORY = 8 << 30
+SLOWEST = 40
 Arrays = dict[tuple[str, str], list[np.ndarray]]
 
 
@@ -173,6 +174,9 @@ class Trials:
             took = f"({time.time() - begin:.0f} s)"
             print(f"{outcome:18} {text}  {detail} {took}", flush=True)
             print("   ", ", ".join(f"{name} {n}" for name, n in counts.items()), flush=True)
+        print("the slowest tests, of those that were run:")
+        for name in sorted(self.seconds, key=lambda name: -self.seconds[name])[:SLOWEST]:
+            print(f"{self.seconds[name]:6.1f} s  {name}")
         return True
 
     def judged(self, session: pytest.Session, number: int, rooms: tuple[str, ...]) -> tuple:
@@ -195,7 +199,8 @@ class Trials:
             status, log = in_child(number, lambda some=ordered: self.run(session, some))
             if log is None:
                 return "seen", f"no end or a crash: {status}"
-            self.seconds |= {name: seconds for name, seconds, _ in log}
+            for name, seconds, _ in log:
+                self.seconds[name] = max(seconds, self.seconds.get(name, 0.0))
             failed = [name for name, _, bad in log if bad]
             if not failed:
                 return "not seen", ""
@@ -228,7 +233,17 @@ def main() -> int:
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     rooms = sorted({f"tests/{name}" for _, room, _ in trials for name in SEEN_BY[room][1]})
-    options = ["-q", "-s", "-n", "0", "-p", "no:cacheprovider", "--hypothesis-profile=mutants"]
+    options = [
+        "-q",
+        "-s",
+        "-n",
+        "0",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:faulthandler",
+        "--hypothesis-profile=mutants",
+    ]
     return int(pytest.main([*options, *rooms], plugins=[Trials(trials)]))
 
 

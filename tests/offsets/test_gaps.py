@@ -30,7 +30,7 @@ SHAPES = {
     "gasket": lambda: parts()["gasket"],
     "involute": lambda: parts()["involute gear"],
 }
-TRIALS, WALLS = 1000, 20
+TRIALS, WALLS = 250, 20
 
 
 class Stretch(NamedTuple):
