@@ -34,6 +34,8 @@ SEEN_BY = {
 }
 # Seconds of CPU for a digest and for one test. Beyond, a mutant has no end, which is seen as well.
 PATIENCE = 30
+# Seconds of tests for each mutant at first. What they do not see is asked of all tests in the end.
+AT_FIRST = 15.0
 # Differences by no more than this share of the largest number are the last bits'.
 ROUNDING = 1e-12
 MEMORY = 8 << 30
@@ -131,6 +133,7 @@ class Trials:
         self.kills: dict[str, int] = {}
         self.sound: dict[str, bool] = {}  # whether a test passes where there is no mutant
         self.log: list[tuple[str, float, bool]] = []
+        self.until = np.inf
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_configure(self) -> None:
@@ -144,6 +147,8 @@ class Trials:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self.log.append((report.nodeid, report.duration, report.failed))
+        if time.process_time() > self.until and not report.failed:
+            self.session.shouldstop = "the time for a mutant is over"
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
@@ -161,49 +166,69 @@ class Trials:
                 found[name].compile(signature)  # from the folder of compiled code
         print(f"{len(session.items)} tests, compiled in {time.time() - begin:.0f} s", flush=True)
         counts = dict.fromkeys(("seen", "not seen", "rounding only", "no result changed"), 0)
+        later = []
+
+        def told(outcome: str, text: str, begin: float) -> None:
+            print(f"{outcome:18} {text}  ({time.time() - begin:.0f} s)", flush=True)
+            state = counts | {"seen by no test yet": len(later)}
+            print("   ", ", ".join(f"{name} {n}" for name, n in state.items()), flush=True)
+
         for number, room, text in self.trials:
             begin = time.time()
-            topics, rooms = SEEN_BY[room]
+            topics = SEEN_BY[room][0]
             status, worst = in_child(number, lambda t=topics: differences(t, expected))
-            detail = ""
             if not status and worst < 2:
                 outcome = ("no result changed", "rounding only")[worst]
+            elif seen := self.judged(session, (number, room, text), AT_FIRST):
+                outcome, text = "seen", f"{text}  {seen}"
             else:
-                outcome, detail = self.judged(session, number, rooms)
+                later.append((number, room, text))
+                told("no test yet", text, begin)
+                continue
             counts[outcome] += 1
-            took = f"({time.time() - begin:.0f} s)"
-            print(f"{outcome:18} {text}  {detail} {took}", flush=True)
-            print("   ", ", ".join(f"{name} {n}" for name, n in counts.items()), flush=True)
+            told(outcome, text, begin)
+        while later:
+            begin = time.time()
+            number, room, text = later.pop(0)
+            seen = self.judged(session, (number, room, text))
+            outcome = "seen" if seen else "not seen"
+            counts[outcome] += 1
+            told(outcome, f"{text}  {seen}", begin)
         print("the slowest tests, of those that were run:")
         for name in sorted(self.seconds, key=lambda name: -self.seconds[name])[:SLOWEST]:
             print(f"{self.seconds[name]:6.1f} s  {name}")
         return True
 
-    def judged(self, session: pytest.Session, number: int, rooms: tuple[str, ...]) -> tuple:
-        """Whether tests see a mutant, and which did."""
+    def judged(
+        self, session: pytest.Session, trial: tuple[int, str, str], seconds: float = np.inf
+    ) -> str:
+        """What sees a mutant: the test that fails first, or nothing."""
+        number, room, text = trial
+        rooms, kernel = SEEN_BY[room][1], text.split()[1].partition(".")[0]
         items = [i for i in session.items if i.path.parent.name in rooms]
         files: dict[Path, list[pytest.Item]] = {}
         for item in items:
             files.setdefault(item.path, []).append(item)
 
-        def order(path: Path) -> tuple[float, float]:
+        def order(path: Path) -> tuple[bool, float, float]:
             names = [item.nodeid for item in files[path]]
-            seconds = sum(self.seconds.get(name, 1.0) for name in names)
-            return -sum(self.kills.get(name, 0) for name in names), seconds
+            took = sum(self.seconds.get(name, 1.0) for name in names)
+            imported = f"{room}.kernels.{kernel} import" in path.read_text()
+            return not imported, -sum(self.kills.get(name, 0) for name in names), took
 
         ordered = []
         for path in sorted(files, key=order):
             some = sorted(files[path], key=lambda i: -self.kills.get(i.nodeid, 0))
             ordered += [item for item in some if self.sound.get(item.nodeid, True)]
         while True:
-            status, log = in_child(number, lambda some=ordered: self.run(session, some))
+            status, log = in_child(number, lambda some=ordered: self.run(session, some, seconds))
             if log is None:
-                return "seen", f"no end or a crash: {status}"
-            for name, seconds, _ in log:
-                self.seconds[name] = max(seconds, self.seconds.get(name, 0.0))
+                return f"no end or a crash: {status}"
+            for name, took, _ in log:
+                self.seconds[name] = max(took, self.seconds.get(name, 0.0))
             failed = [name for name, _, bad in log if bad]
             if not failed:
-                return "not seen", ""
+                return ""
             name = failed[0]
             if name not in self.sound:
                 one = [item for item in items if item.nodeid == name]
@@ -211,19 +236,21 @@ class Trials:
                 self.sound[name] = not status and not any(bad for _, _, bad in log)
             if self.sound[name]:
                 self.kills[name] = self.kills.get(name, 0) + 1
-                return "seen", name
+                return name
             print(f"    fails without a mutant: {name}", flush=True)
             ordered = [item for item in ordered if item.nodeid != name]
 
-    def run(self, session: pytest.Session, items: list[pytest.Item]) -> list:
-        """Tests until one fails, in silence."""
+    def run(
+        self, session: pytest.Session, items: list[pytest.Item], seconds: float = np.inf
+    ) -> list[tuple[str, float, bool]]:
+        """Tests until one fails, or for so long, in silence."""
         nothing = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nothing, 1)
         os.dup2(nothing, 2)
-        self.log = []
+        self.log, self.until, self.session = [], time.process_time() + seconds, session
         session.items = items
         session.config.option.maxfail = 1
-        with contextlib.suppress(session.Failed):
+        with contextlib.suppress(session.Failed, session.Interrupted):
             _pytest.main.pytest_runtestloop(session)
         return self.log
 
