@@ -205,7 +205,9 @@ class Trials:
         """What sees a mutant: the test that fails first, or nothing."""
         number, room, text = trial
         rooms, kernel = SEEN_BY[room][1], text.split()[1].partition(".")[0]
-        items = [i for i in session.items if i.path.parent.name in rooms]
+        named = f"{room}.kernels.{kernel} import"
+        direct = {path for path in {i.path for i in session.items} if named in path.read_text()}
+        items = [i for i in session.items if i.path.parent.name in rooms or i.path in direct]
         files: dict[Path, list[pytest.Item]] = {}
         for item in items:
             files.setdefault(item.path, []).append(item)
@@ -213,8 +215,7 @@ class Trials:
         def order(path: Path) -> tuple[bool, float, float]:
             names = [item.nodeid for item in files[path]]
             took = sum(self.seconds.get(name, 1.0) for name in names)
-            imported = f"{room}.kernels.{kernel} import" in path.read_text()
-            return not imported, -sum(self.kills.get(name, 0) for name in names), took
+            return path not in direct, -sum(self.kills.get(name, 0) for name in names), took
 
         ordered = []
         for path in sorted(files, key=order):
