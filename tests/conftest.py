@@ -8,8 +8,11 @@ wherever it is run. The random search is a command of its own:
 
 from __future__ import annotations
 
+import os
+
 from hypothesis import HealthCheck, settings
 
+from tests.compiled_once import compile_each_once
 from tests.examples import USUAL
 
 # Compilation makes the first example slow: no deadline.
@@ -26,3 +29,6 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("same")
+
+if "PYTEST_XDIST_WORKER" in os.environ:
+    compile_each_once()

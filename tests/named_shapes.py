@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 
 import splinesdf as ss
+from splinesdf.paper import tables
 from tests import oracles
 
 FORMULAS = {
@@ -17,6 +18,12 @@ FORMULAS = {
 }
 Loops = list[list[np.ndarray]]  # of control points
 UNIT = (0.0, 0.0, 1.0, 1.0)
+
+
+@cache
+def paper_rows() -> tuple[tables.Row, ...]:
+    """The paper's tables, once in a process."""
+    return tuple(tables.tables())
 
 
 @cache

@@ -21,7 +21,7 @@ from tests.nearness import apart, dense
 
 def check(contour: Contour, tolerance: float, sag: float | None = None) -> Contour:
     """All that is promised; the result."""
-    sag = 1e-4 * tolerance if sag is None else sag
+    sag = 1e-3 * tolerance if sag is None else sag
     result = ss.as_arcs(contour, tolerance=tolerance)
     # The result's points are rounded once more, which tells on arcs of a few roundings.
     found = classify(result.arcs, result.weights, 2.0 * rounding(result.arcs))

@@ -14,12 +14,12 @@ def error_in(result: ss.FitResult, shape: ss.Shape, seed: int = 3) -> float:
     """The largest |s - u| at random points of the bands, by the exact distance or the spline."""
     xmin, ymin, xmax, ymax = result.spline.domain
     random = np.random.default_rng(seed)
-    points = random.uniform((xmin, ymin), (xmax, ymax), (400_000, 2))
+    points = random.uniform((xmin, ymin), (xmax, ymax), (100_000, 2))
     # Those near the exact levels as well: along the gradient, which is that of the distance.
     exact = ss.signed_distance(shape, points)
     _, gradient = ss.distance.distance_and_gradient(shape, points)
     for level in {value for band in result.bands for value in band}:
-        points = np.concatenate([points, points[:400_000] + (level - exact)[:, None] * gradient])
+        points = np.concatenate([points, points[:100_000] + (level - exact)[:, None] * gradient])
     points = points[np.isfinite(points).all(axis=1)]
     inside = np.all((points >= (xmin, ymin)) & (points <= (xmax, ymax)), axis=1)
     points = points[inside]

@@ -16,7 +16,7 @@ from splinesdf.fits.fit import require_reached
 from splinesdf.meshes import Grid
 from splinesdf.paper import tables as paper
 from splinesdf.splines.quasi import quasi_interpolate
-from tests.named_shapes import UNIT, gamma
+from tests.named_shapes import UNIT, gamma, paper_rows
 
 SQUARE = ss.Shape.from_points([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
 SHAPES = [gamma("gamma1"), gamma("gamma2"), gamma("gamma3"), SQUARE]
@@ -24,7 +24,7 @@ SHAPES = [gamma("gamma1"), gamma("gamma2"), gamma("gamma3"), SQUARE]
 
 @pytest.fixture(scope="module")
 def rows() -> list[paper.Row]:
-    return list(paper.tables())
+    return list(paper_rows())
 
 
 def test_every_row_of_the_paper_comes_out_by_the_front_door(rows: list[paper.Row]) -> None:

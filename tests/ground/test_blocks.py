@@ -65,6 +65,6 @@ def test_a_forked_process_has_threads_of_its_own() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # 3.12: fork with threads
         child.start()
-    assert answers.get(timeout=60) == 200.0
+    assert answers.get(timeout=600) == 200.0
     child.join(60)
     assert child.exitcode == 0

@@ -25,7 +25,7 @@ SHAPES = {
     "gasket": lambda: parts()["gasket"],
     "involute": lambda: parts()["involute gear"],
 }
-TRIALS, WALLS = 1000, 20
+TRIALS, WALLS = 250, 20
 point_on = from_python(arclet.point_on)
 closest_on = from_python(nearest.closest_on)
 parallel_point = from_python(_parallels.parallel_point)
@@ -34,6 +34,8 @@ stays_nearer = from_python(clearance._stays_nearer)
 is_nearer_at_its_ends = from_python(clearance._is_nearer_at_its_ends)
 second_range = from_python(clearance._second_range)
 apart = from_python(gather._apart)
+passes = from_python(clearance._passes)
+clearance_at = from_python(clearance.clearance_at)
 
 
 class Stretch(NamedTuple):
@@ -179,3 +181,35 @@ def test_nodes_of_the_tree_are_no_nearer_to_a_segment_than_is_said() -> None:
         assert bound <= real * (1.0 + 1e-12)
         said.append(bound > 0.5 * real)
     assert np.mean(said) > 0.3
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_where_the_gap_to_a_wall_is_zero_is_found(name: str) -> None:
+    shape = SHAPES[name]()
+    count, scratch = len(shape.boundary.start), room_to_search(shape.boundary.arcs)
+    random = np.random.default_rng(8)
+    found = 0
+    for _ in range(200):
+        element, wall = (int(random.integers(count)), 0), int(random.integers(count))
+        side = float(random.choice([-1.0, 1.0]))
+
+        def gap(t: float, d: float, element: tuple = element, wall: int = wall) -> float:
+            levels, around = parallels_at(shape, d), walls_at(shape, d)
+            return float(clearance_at(levels, around, element, wall, t, scratch))
+
+        # A distance at which the gap is zero in the middle of the parallel, if there is one.
+        near, far = 1e-3 * side * shape.size, 0.5 * side * shape.size
+        if not gap(0.5, far) < 0.0 < gap(0.5, near):
+            continue
+        for _ in range(20):
+            middle = 0.5 * (near + far)
+            near, far = (middle, far) if gap(0.5, middle) > 0.0 else (near, middle)
+        for ends in ((0.1, 0.97), (0.97, 0.1)):
+            if not gap(ends[0], far) < 0.0 < gap(ends[1], far):
+                continue
+            found += 1
+            levels, around = parallels_at(shape, far), walls_at(shape, far)
+            t = passes(levels, around, element, wall, ends, scratch)
+            assert min(ends) <= t <= max(ends)
+            assert abs(gap(t, far)) <= 1e-13 * shape.size
+    assert found > 10

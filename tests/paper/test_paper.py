@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 import splinesdf as ss
 from splinesdf.paper import tables as paper
 from tests import naive
-from tests.named_shapes import curve
+from tests.named_shapes import curve, paper_rows
 
 TABLES = Path(__file__).parents[1] / "data" / "paper_tables.csv"
 # The paper prints 2.53e-2, its digits cut off; the value is 0.025388, by the naive distance too.
@@ -22,7 +22,7 @@ CUT_OFF = {(2, "W", 0): "2.54e-02"}
 
 @pytest.fixture(scope="module")
 def rows() -> list[paper.Row]:
-    return list(paper.tables())
+    return list(paper_rows())
 
 
 @pytest.fixture(scope="module")

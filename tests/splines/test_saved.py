@@ -6,7 +6,6 @@ import dataclasses
 import itertools
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from splinesdf.splines.provenance import Provenance
 from splinesdf.splines.spline import SplineSDF
 from tests.naive_tree import refine
 from tests.named_shapes import UNIT, gamma
-from tests.saving import MADE, fields_of, fit_with_shape, full_tree, two_loops
+from tests.saving import MADE, before_line, fields_of, fit_with_shape, full_tree, two_loops
 
 VERSION_1 = Path(__file__).parents[1] / "data" / "saved_version_1.npz"
 
@@ -184,18 +183,15 @@ def test_what_would_not_load_is_not_saved(tmp_path: Path) -> None:
         assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]
 
 
-def test_a_million_leaves_load_in_under_a_second(tmp_path: Path) -> None:
-    """Measured: 0.1 s, so that a busy machine does not fail it."""
-    tree = full_tree(9)
-    ordinates = np.random.default_rng(0).normal(size=(4**10, 8))
-    SplineSDF(tree, ordinates).save(tmp_path / "fit.npz")
-    seconds = []
-    for _ in range(3):
-        began = time.perf_counter()
+def test_no_line_is_run_for_each_leaf(tmp_path: Path) -> None:
+    """A million leaves load in 0.1 s, as only NumPy goes through them."""
+    ordinates = np.random.default_rng(0).normal(size=(4**8, 8))
+    SplineSDF(full_tree(7), ordinates).save(tmp_path / "fit.npz")
+    many = 10**9
+    with before_line(many, lambda: None) as left:
         loaded = ss.load(tmp_path / "fit.npz")
-        seconds.append(time.perf_counter() - began)
     assert np.array_equal(loaded.ordinates, ordinates)
-    assert min(seconds) < 1.0
+    assert 1000 < many - left[0] < len(ordinates) // 10  # most are for the header and for blocks
 
 
 def test_info_says_from_what_a_fit_was_made(tmp_path: Path) -> None:
