@@ -6,12 +6,16 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.distance.kernels.branches import _at_foot, side_of
-from splinesdf.distance.kernels.feet import fill_foot_table
+from splinesdf.distance.kernels import branches, feet
 from splinesdf.distance.tables import Bent
+from tests.compiled import from_python
 from tests.glyphs import glyphs
 from tests.mechanical import parts
 from tests.named_shapes import gamma
+
+at_foot = from_python(branches._at_foot)
+side_of = from_python(branches.side_of)
+fill_foot_table = from_python(feet.fill_foot_table)
 
 MOST = 32
 SHAPES = {
@@ -76,7 +80,7 @@ def test_a_corner_is_seen_from_the_side_that_the_curve_turns_away_from(reverse: 
         [before] = [j for j in range(number) if near[j, 1] == 1.0 and near[j, 0] <= abs(exact)]
         [after] = [j for j in range(number) if near[j, 1] == 0.0 and near[j, 0] <= abs(exact)]
         for chain in ((before, after, before), (before, after, after)):
-            u, gx, gy, k, known = _at_foot(bent, ids, chain, near)
+            u, gx, gy, k, known = at_foot(bent, ids, chain, near)
             assert known
             assert u == pytest.approx(exact, rel=1e-14)
             # A level set next to a corner is a circle around it.
@@ -88,7 +92,7 @@ def test_a_corner_is_seen_from_the_side_that_the_curve_turns_away_from(reverse: 
             seen += 1
         # At the end of a chain it is not known where the curve goes on.
         for chain in ((before, before, before), (after, after, after)):
-            u, _, _, _, known = _at_foot(bent, ids, chain, near)
+            u, _, _, _, known = at_foot(bent, ids, chain, near)
             assert not known
             assert u == pytest.approx(abs(exact), rel=1e-14)
     assert seen == 6

@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from splinesdf.fits.kernels.means import _best_share, least_of_means
+from splinesdf.fits.kernels import means
+from tests.compiled import from_python
+
+best_share = from_python(means._best_share)
+least_of_means = from_python(means.least_of_means)
 
 # Barycentric coordinates all over a triangle.
 GRID = np.array([(i, j, 40 - i - j) for i in range(41) for j in range(41 - i)]) / 40.0
@@ -33,7 +37,7 @@ def test_the_share_is_the_best_one() -> None:
         def least(share: np.ndarray, q: np.ndarray = q, other: np.ndarray = other) -> np.ndarray:
             return (share[:, None] * q + (1.0 - share)[:, None] * other).min(axis=1)
 
-        found = _best_share(q, other)
+        found = best_share(q, other)
         # Eight halvings: half of 1/256, by the steepest of the lines.
         slack = np.abs(q - other).max() / 512.0
         assert 0.0 < found < 1.0

@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from splinesdf.contours.contour import evaluate
-from splinesdf.offsets.kernels.conic_arc import _barycentric, _off
+from splinesdf.offsets.kernels import conic_arc
+from tests.compiled import from_python
+
+barycentric = from_python(conic_arc._barycentric)
+off = from_python(conic_arc._off)
 
 ARCS = np.array(
     [
@@ -26,7 +30,7 @@ def triangle(arc: np.ndarray) -> tuple[float, float, float, float, float, float]
 @pytest.mark.parametrize("arc", ARCS)
 def test_shares_give_the_point_back(arc: np.ndarray) -> None:
     for x, y in np.random.default_rng(1).normal(size=(20, 2)).tolist():
-        shares = np.array(_barycentric(triangle(arc), x, y))
+        shares = np.array(barycentric(triangle(arc), x, y))
         assert shares.sum() == pytest.approx(1.0, abs=1e-15)
         assert shares @ arc == pytest.approx([x, y], abs=1e-13)
 
@@ -42,12 +46,12 @@ def test_points_beside_a_conic_are_as_far_as_they_were_moved(arc: np.ndarray, w:
     for moved in (1e-6, -1e-4, 1e-3):
         for x, y in (on + moved * normal).tolist():
             # The normal is good to h²; what a point's distance misses is of second order.
-            assert _off(triangle(arc), w * w, x, y) == pytest.approx(abs(moved), rel=0.05)
+            assert off(triangle(arc), w * w, x, y) == pytest.approx(abs(moved), rel=0.05)
 
 
 def test_points_beside_a_circle_are_as_far_as_their_radius_says() -> None:
     for angle in np.linspace(0.1, 1.4, 9):
         for radius in (0.99, 1.0 - 1e-9, 1.0 + 1e-4, 1.01):
             x, y = radius * np.cos(angle), radius * np.sin(angle)
-            found = _off(triangle(ARCS[0]), 0.5, float(x), float(y))
+            found = off(triangle(ARCS[0]), 0.5, float(x), float(y))
             assert found == pytest.approx(abs(radius - 1.0), rel=0.02, abs=1e-14)

@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.offsets.loops import Loose, _fill_in, loops_of
-from splinesdf.offsets.trimmed import SMOOTH, Stretches, loop_sizes, parallels, trimmed
+from splinesdf.arclets.thresholds import SMOOTH
+from splinesdf.offsets.corners import Corners, _filled_in
+from splinesdf.offsets.loops import loops_of
+from splinesdf.offsets.trimmed import (
+    loop_sizes,
+    parallels,
+    segments_at,
+    selected,
+    trimmed,
+)
 from tests.named_shapes import gamma
 
 SQUARE = ss.Shape.from_svg_path("M-1 -1H1V1H-1Z")
@@ -15,16 +23,17 @@ SQUARE = ss.Shape.from_svg_path("M-1 -1H1V1H-1Z")
 
 @pytest.mark.parametrize("corner", range(4))
 def test_an_arc_that_is_missing_is_bridged_around_its_corner(corner: int) -> None:
-    elements, spans = trimmed(SQUARE, 0.3, 1e-3)
-    others = (elements != [corner, 1]).any(axis=1)
-    loops = loops_of(SQUARE, Stretches(elements[others], spans[others]), 0.3, 1.0)
+    segments = trimmed(SQUARE, 0.3, 1e-3)
+    others = (segments.elements != [corner, 1]).any(axis=1)
+    loops = loops_of(SQUARE, selected(segments, others), 0.3, 1.0)
     assert loops is not None
-    bridge = loops.elements[:, 0] < 0
+    bridge = loops.segments.elements[:, 0] < 0
     # Where the arc was, between the same points, and smooth at both ends.
-    whole = loops_of(SQUARE, Stretches(elements, spans), 0.3, 1.0)
+    whole = loops_of(SQUARE, segments, 0.3, 1.0)
     assert whole is not None
-    assert np.array_equal(bridge, (whole.elements == [corner, 1]).all(axis=1))
-    assert np.allclose(loops.start, whole.start, rtol=0.0, atol=1e-15)
+    assert np.array_equal(bridge, (whole.segments.elements == [corner, 1]).all(axis=1))
+    starts = [table.segments.start[:, :2] for table in (loops, whole)]
+    assert np.allclose(*starts, rtol=0.0, atol=1e-15)
     center = SQUARE.boundary.end[corner]
     assert np.allclose(loops.center[bridge], center, rtol=0.0, atol=1e-15)
     assert np.isnan(loops.center[~bridge]).all()
@@ -32,9 +41,9 @@ def test_an_arc_that_is_missing_is_bridged_around_its_corner(corner: int) -> Non
 
 
 def test_what_is_too_far_apart_for_the_tolerance_is_not_bridged() -> None:
-    elements, spans = trimmed(SQUARE, 0.3, 1e-3)
-    others = (elements != [0, 1]).any(axis=1)
-    assert loops_of(SQUARE, Stretches(elements[others], spans[others]), 0.3, 0.1) is None
+    segments = trimmed(SQUARE, 0.3, 1e-3)
+    others = (segments.elements != [0, 1]).any(axis=1)
+    assert loops_of(SQUARE, selected(segments, others), 0.3, 0.1) is None
 
 
 def test_corners_are_not_smooth() -> None:
@@ -61,21 +70,23 @@ def test_smooth_parallels_run_on_where_nothing_is_nearer(
         one = 2 * one
     other = one + 1
     spans[one, 1], spans[other, 0] = middle[0] - 1e-7, middle[1] + 1e-7
-    points = np.stack([parallels(shape, elements, at, distance) for at in spans.T])
+    segments = segments_at(shape, elements, spans, distance)
     # Not across the corners where the curve crosses itself.
-    near = np.hypot(*(points[1, one, :2] - points[0, other, :2]).T) < 1e-6 * shape.size
+    gap = segments.end[one, :2] - segments.start[other, :2]
+    near = np.hypot(*gap.T) < 1e-6 * shape.size
     one, other, before = one[near], other[near], spans.copy()
-    sizes = loop_sizes(shape, distance)[elements[:, 0]]
-    _fill_in(shape, Loose(elements, spans, points, one, other, sizes), distance, SMOOTH)
-    # Told by the exact distance where they were cut.
+    corners = Corners(one, other, loop_sizes(shape, distance)[elements[one, 0]])
+    found = _filled_in(shape, segments, corners, distance, SMOOTH)
+    # The exact distance decides where they were cut.
     cut = parallels(shape, elements[one], np.full(len(one), middle[0]), distance)
     exact = ss.signed_distance(shape, cut[:, :2] + shape.boundary.origin)
     filled = (np.abs(exact - distance) < 1e-12 * shape.size) & (cut[:, 4] > 0.0)
     assert filled.any()
     assert filled.all() == (name == "gamma2")
-    assert np.allclose(spans[one[filled], 1], middle[0], rtol=0.0, atol=1e-15)
-    assert np.allclose(spans[other[filled], 0], middle[1], rtol=0.0, atol=1e-15)
-    assert np.allclose(points[:, one[filled]][1, :, :2], cut[filled, :2], rtol=0.0, atol=1e-15)
-    assert np.allclose(points[0, other[filled], :2], cut[filled, :2], rtol=0.0, atol=1e-11)
-    assert np.array_equal(spans[one[~filled]], before[one[~filled]])
-    assert np.array_equal(spans[other[~filled]], before[other[~filled]])
+    a, b = one[filled], other[filled]
+    assert np.allclose(found.spans[a, 1], middle[0], rtol=0.0, atol=1e-15)
+    assert np.allclose(found.spans[b, 0], middle[1], rtol=0.0, atol=1e-15)
+    assert np.allclose(found.end[a, :2], cut[filled, :2], rtol=0.0, atol=1e-15)
+    assert np.allclose(found.start[b, :2], cut[filled, :2], rtol=0.0, atol=1e-11)
+    assert np.array_equal(found.spans[one[~filled]], before[one[~filled]])
+    assert np.array_equal(found.spans[other[~filled]], before[other[~filled]])

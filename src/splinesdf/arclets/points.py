@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from splinesdf.arclets.tables import Arclets
@@ -78,3 +80,17 @@ def evaluate_bezier(control: Floats, parameters: Floats) -> Floats:
     while points.shape[1] > 1:
         points = (1.0 - t) * points[:, :-1] + t * points[:, 1:]
     return points[:, 0]
+
+
+def sampled_loops(control: Floats, starts: Ints, loops: Ints, count: int) -> list[Floats]:
+    """Loops of pieces as closed polylines, ``count`` equal steps a piece, one on a straight one."""
+    parameters = np.linspace(0.0, 1.0, count, endpoint=False)
+    result = []
+    for first, last in pairwise(loops):
+        pieces = [control[starts[i] : starts[i + 1]] for i in range(first, last)]
+        parts = [
+            evaluate_bezier(piece, parameters[:1] if len(piece) == 2 else parameters)
+            for piece in pieces
+        ]
+        result.append(np.concatenate([*parts, parts[0][:1]]))
+    return result

@@ -63,14 +63,10 @@ def offset(
     shape: str,
     reading: dict[str, Any],
     tolerance: float | None,
-    coarse: bool,
     distances: tuple[float, ...],
     step: float | None,
     output: str,
-    arcs: bool,
-    units: str | None,
-    check: bool,
-    **milling: Any,
+    **flags: Any,
 ) -> None:
     """Write the trimmed offsets of SHAPE, at distances or in steps.
 
@@ -82,16 +78,17 @@ def offset(
         got = "both" if distances else "neither"
         raise ss.InputError(f"expected either --distance (-d) or --step, got {got}: give one")
     source = read_shape(shape, reading)
-    given = {name: value for name, value in milling.items() if value is not None}
+    given = {name: flags[name] for name in _MILLING if flags[name] is not None}
+    arcs = flags["arcs"]
     options: dict[str, Any] = {
         "arcs": arcs,
-        "units": units,
+        "units": flags["units"],
         "milling": ss.Milling(**given) if given else None,
     }
     suffix = check_format(output, **options)
     check_outputs(shape, output)
     asked = distances if step is None else (step,)
-    tolerance = offset_tolerance_of(source, asked, tolerance, coarse=coarse)
+    tolerance = offset_tolerance_of(source, asked, tolerance, coarse=flags["coarse"])
     share = _share(suffix, arcs)
     farthest = max(map(abs, distances), default=0.0)
     if tolerance < (least := least_tolerance(source, farthest) / share):
@@ -106,7 +103,7 @@ def offset(
     off = report.print_offsets(source, contours, distances, tolerance)
     report.print_written(output)
     passed = _keeps(off, tolerance)
-    if check:
+    if flags["check"]:
         # At the step after the last nothing is to be left.
         ended = () if step is None else ((len(distances) + 1) * step,)
         passed &= _check(output, source, contours, (*distances, *ended), tolerance)

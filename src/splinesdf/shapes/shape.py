@@ -14,7 +14,7 @@ from splinesdf.arclets.curvature import bends
 from splinesdf.arclets.cutting import build_arclets
 from splinesdf.arclets.joints import joints
 from splinesdf.arclets.kinds import kinds
-from splinesdf.arclets.points import evaluate_bezier
+from splinesdf.arclets.points import sampled_loops
 from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
@@ -36,8 +36,7 @@ Fill = Literal["nonzero", "evenodd"]
 
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
-# Samples a piece in `Shape.sample`. More: no picture shows them, and a slip of the pen takes all
-# memory; fewer: a circle of one piece could look like a polygon.
+# Samples a piece. More: a slip of the pen takes all memory; fewer: a circle could look a polygon.
 _MOST_SAMPLES = 1_000_000
 
 
@@ -260,9 +259,8 @@ class Shape:
     def from_contours(cls, contours: Iterable[Contour], *, name: str = "") -> Shape:
         """The region that closed contours of one level enclose, as those of an offset do.
 
-        So an offset can be offset again: outward and back inward closes gaps, inward and back
-        outward takes off what is thin. Lines and parabolas are exact, other conics to a few units
-        in the last place.
+        So an offset can be offset again. Lines and parabolas are exact, other conics to a few
+        units in the last place.
         """
         given = list(contours)
         y_down = any(getattr(contour, "y_down", False) for contour in given)
@@ -272,17 +270,12 @@ class Shape:
     def from_shapely(cls, geometry: object, *, name: str = "") -> Shape:
         """The union of all polygons of a geometry of Shapely, or of its like.
 
-        Parameters
-        ----------
-        geometry : object
-            A GeoJSON object, or one with a ``__geo_interface__``. Points and lines are left out,
-            and named in the notes.
+        It is a GeoJSON object or has a ``__geo_interface__``; points and lines are left out, and
+        named in the notes.
         """
         found = polygons_of(geometry)
-        loops, fill = found.united(None)
-        return cls.from_pieces(
-            loops, fill=fill, close=True, name=name, notes=found.notes(), once=False
-        )
+        (loops, fill), notes = found.united(None), found.notes()
+        return cls.from_pieces(loops, fill=fill, close=True, name=name, notes=notes, once=False)
 
     @classmethod
     def from_svg_path(
@@ -396,18 +389,7 @@ class Shape:
             For pictures and rough work: the last point repeats the first.
         """
         count = whole(count, "count", least=1, most=_MOST_SAMPLES)
-        parameters = np.linspace(0.0, 1.0, count, endpoint=False)
-        result = []
-        for first, last in zip(self.loops[:-1], self.loops[1:], strict=True):
-            parts = [
-                evaluate_bezier(self.piece(i), parameters[:1] if self._is_line(i) else parameters)
-                for i in range(first, last)
-            ]
-            result.append(np.concatenate([*parts, parts[0][:1]]))
-        return result
-
-    def _is_line(self, index: int) -> bool:
-        return bool(self.starts[index + 1] - self.starts[index] == 2)
+        return sampled_loops(self.control, self.starts, self.loops, count)
 
 
 def _fill_rule(fill: str) -> Fill:

@@ -103,7 +103,7 @@ def _walk(
             for j in range(count):
                 # nearest ones last, on top of the stack
                 scratch.nodes[j] = candidates.nodes[kept + count - 1 - j]
-            distance, found, t = search(tree, arcs, px, py, best, count, own, ignored, scratch)
+            distance, found, t = search(tree, arcs, (px, py), best, count, own, ignored, scratch)
             if found >= 0 or best == limit:
                 break
             best = limit  # rounding hid the minimum from the neighbor's bound
@@ -129,8 +129,7 @@ def room_to_search(arcs: Floats) -> Scratch:
 def search(
     tree: Floats,
     arcs: Floats,
-    px: float,
-    py: float,
+    point: tuple[float, float],
     best: float,
     size: int,
     own: int,
@@ -142,6 +141,7 @@ def search(
     The nodes stand in ``scratch.nodes[:size]``, the first to be looked at last. The arclet ``own``
     and those whose squared distance is not above ``ignored`` are passed over.
     """
+    px, py = point
     nodes, bounds = scratch.nodes, scratch.bounds
     # Lines alone have the narrowest rows. To go through a few is quicker than down the tree.
     few = _LINES if arcs.shape[1] == 16 else 1

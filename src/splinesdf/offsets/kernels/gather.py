@@ -105,7 +105,7 @@ def _nearest(
 ) -> tuple[float, int, float]:
     """The arclet nearest to a point within a limit, see `search`."""
     scratch.nodes[0] = 0
-    return search(walls.tree, walls.arcs, x, y, limit, _ROOT, _NONE, -1.0, scratch)
+    return search(walls.tree, walls.arcs, (x, y), limit, _ROOT, _NONE, -1.0, scratch)
 
 
 @uncounted
