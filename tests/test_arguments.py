@@ -50,7 +50,7 @@ def contour() -> ss.Contour:
 # a few, each of which is tried. Everything else is none.
 KINDS: dict[str, str] = {
     **dict.fromkeys(("tolerance", "step", "max_distance", "min_side", "level", "beyond"), "number"),
-    **dict.fromkeys(("gap", "unit"), "number"),
+    **dict.fromkeys(("gap", "unit", "size"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
     **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
@@ -68,6 +68,9 @@ KINDS: dict[str, str] = {
                 "stroke",
                 "ignore",
                 "layers",
+                "text",
+                "location",
+                "geometry",
                 "certify",
                 "coarse",
                 "once",

@@ -191,8 +191,11 @@ def test_many_points_are_read(table) -> None:
 PNG = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"
 
 
-# DXF may be in any encoding, or binary; its own tests are those of `test_read_dxf`.
-@pytest.mark.parametrize("suffix", sorted(set(READERS) - {".dxf"}))
+# DXF may be in any encoding, or binary, and fonts are: they have tests of their own.
+BINARY = {".dxf", ".otf", ".ttc", ".ttf", ".woff", ".woff2"}
+
+
+@pytest.mark.parametrize("suffix", sorted(set(READERS) - BINARY))
 @pytest.mark.parametrize(
     ("content", "expected"),
     [
