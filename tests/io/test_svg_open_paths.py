@@ -183,8 +183,8 @@ def test_a_unit_that_files_cannot_have_is_told_once(
     svg: Svg, root: str, said: str, length: str
 ) -> None:
     assert svg(SQUARE, root=root).notes == (
-        f"the drawing says {said}: one unit is {length}; nothing is converted, give the factor to "
-        "your CAM program",
+        f"the drawing says {said}: one unit is {length}; DXF and G-code are written in "
+        "millimeters, or inches (--units inch)",
     )
 
 

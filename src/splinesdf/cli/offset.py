@@ -23,7 +23,7 @@ from splinesdf.distance.depth import deepest
 from splinesdf.io.enclosed import check_sides
 from splinesdf.io.output import check_format
 from splinesdf.io.remeasured import measure_file
-from splinesdf.io.writers.options import DIRECTIONS, UNITS
+from splinesdf.io.writers.options import DIRECTIONS, GCODE, UNITS, factor
 from splinesdf.offsets.offset import least_tolerance
 
 # Shares of the tolerance for the offset; the file gets the rest. DXF without --arcs is exact; in
@@ -71,8 +71,8 @@ def offset(
     """Write the trimmed offsets of SHAPE, at distances or in steps.
 
     What is written is within the tolerance of the distances, whatever the format. Lengths are in
-    the shape's unit and never converted. DXF and G-code have y pointing up: a shape from an SVG
-    file is mirrored.
+    the shape's unit; DXF and G-code are converted if the shape says how long that is. They have y
+    pointing up: a shape from an SVG file is mirrored.
     """
     if bool(distances) == (step is not None):
         got = "both" if distances else "neither"
@@ -102,11 +102,12 @@ def offset(
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
     off = report.print_offsets(source, contours, distances, tolerance)
     report.print_written(output)
+    _say_units(source, suffix, flags["units"])
     passed = _keeps(off, tolerance)
     if flags["check"]:
         # At the step after the last nothing is to be left.
         ended = () if step is None else ((len(distances) + 1) * step,)
-        passed &= _check(output, source, contours, (*distances, *ended), tolerance)
+        passed &= _check(output, source, contours, (*distances, *ended), tolerance, flags["units"])
     if not passed:
         raise click.exceptions.Exit(1)
 
@@ -181,17 +182,33 @@ def _keeps(off: float, tolerance: float) -> bool:
     return off <= tolerance
 
 
+def _say_units(source: ss.Shape, suffix: str, units: str | None) -> None:
+    """Say by how much the numbers of the file are larger, or that their unit is not known."""
+    if suffix not in GCODE | {".dxf"}:
+        return
+    if source.unit is None:
+        if units is not None or suffix in GCODE:
+            click.echo(
+                f"note: {source.name} does not say its unit: its numbers are written as they are, "
+                f"in {units or 'mm'}",
+                err=True,
+            )
+    elif (by := factor(suffix, source.unit, units)) != 1.0:
+        click.echo(f"note: converted to {units or 'mm'}: {by:.9g} a unit", err=True)
+
+
 def _check(
     output: str,
     source: ss.Shape,
     contours: list[ss.Contour],
     distances: tuple[float, ...],
     tolerance: float,
+    units: str | None,
 ) -> bool:
     """Measure the file: whether its curves are within the tolerance, complete, and there once."""
     wanted = Counter(float(contour.distance) for contour in contours)
     with working(f"reading {Path(output).name} back"):
-        worst = measure_file(output, source, sorted({*wanted, *distances}), tolerance)
+        worst = measure_file(output, source, sorted({*wanted, *distances}), tolerance, units)
     report.print_check(output, worst, tolerance)
     if worst.curves != wanted:
         _complain(f"expected curves at {dict(wanted)}, read {worst.curves}")

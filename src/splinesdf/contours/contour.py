@@ -51,6 +51,8 @@ class Contour:
     fitted : bool
         Of an offset: it is the level set of a fit, as parallels left loose ends. It is within the
         tolerance, but has many arcs, and none of its lines, circles and corners are exact.
+    unit : float, optional
+        How many millimeters one unit of the coordinates is, as in the shape that it is of.
     """
 
     arcs: Floats
@@ -61,8 +63,11 @@ class Contour:
     parent: Contour | None = field(default=None, repr=False)
     tolerance: float | None = None
     fitted: bool = False
+    unit: float | None = None
 
     def __post_init__(self) -> None:
+        if self.unit is not None:
+            object.__setattr__(self, "unit", positive(self.unit, "unit"))
         for name in ("arcs", "weights"):
             object.__setattr__(self, name, as_floats(getattr(self, name), name))
         object.__setattr__(self, "distance", finite(self.distance, "distance"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from splinesdf.errors import InputError
 from splinesdf.ground.atomic import write_text
 from splinesdf.ground.paths import as_path
 from splinesdf.io.writers import WRITERS
-from splinesdf.io.writers.options import Milling, Options, check_options
+from splinesdf.io.writers.options import Milling, Options, check_options, factor
 
 # The default tolerance as a share of the contours' size: far below what a machine cuts or a
 # screen shows, while a circle still takes only about 2000 chords.
@@ -51,8 +52,10 @@ def write(
     arcs : bool
         DXF and SVG: only lines and circular arcs, as G-code always has (see `as_arcs`).
     units : {"mm", "inch"}, optional
-        DXF and G-code: what the numbers are. They are never converted. Default: mm in G-code,
-        which needs one; none in DXF.
+        DXF and G-code: what the numbers are. They are converted if the contours say how long
+        their unit is (`Contour.unit`); otherwise they are written as they are. Default: mm in
+        G-code; in DXF the contours' own unit, if DXF has a number for it, or else mm; none if it
+        is not known. Distances that name layers stay in the contours' unit.
     milling : Milling, optional
         G-code: feed, heights, start and direction.
 
@@ -75,8 +78,21 @@ def write(
         # Of a small contour far from the origin, that is below what its coordinates hold.
         tolerance = max(_DEFAULT_TOLERANCE * size, smallest_tolerance(every))
     check_tolerance(tolerance, every)
-    options = Options(float(tolerance), bool(arcs), units, milling)
+    unit = _unit_of(chains)
+    by = factor(suffix, unit, units)
+    if by != 1.0:
+        chains = [replace(chain, arcs=by * chain.arcs, unit=unit) for chain in chains]
+        units = units or "mm"
+    options = Options(float(by * tolerance), bool(arcs), units, milling, unit)
     write_text(path, WRITERS[suffix](chains, options))
+
+
+def _unit_of(chains: list[Contour]) -> float | None:
+    """The unit that all contours have, None if it is not known."""
+    units = {chain.unit for chain in chains}
+    if len(units) > 1:
+        raise InputError("expected contours of one unit, got several: write one file for each")
+    return units.pop()
 
 
 def check_format(

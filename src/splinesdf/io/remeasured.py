@@ -28,7 +28,7 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.paths import as_path
 from splinesdf.io.enclosed import Sides, check_sides, flattened
-from splinesdf.io.writers.options import GCODE
+from splinesdf.io.writers.options import GCODE, factor
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.svg_path import parse_path
 
@@ -93,7 +93,11 @@ class Worst:
 
 
 def measure_file(
-    path: str | os.PathLike[str], shape: Shape, distances: Sequence[float], tolerance: float
+    path: str | os.PathLike[str],
+    shape: Shape,
+    distances: Sequence[float],
+    tolerance: float,
+    units: str | None = None,
 ) -> Worst:
     """Read a file of contours back and measure it against the exact distance to the shape.
 
@@ -107,6 +111,8 @@ def measure_file(
         place for it, so there each curve counts for the nearest of these.
     tolerance : float
         How far points must be from the level for their side of the curves to count.
+    units : {"mm", "inch"}, optional
+        As `write` was told.
 
     Raises
     ------
@@ -119,7 +125,8 @@ def measure_file(
         raise InputError(f"{os.fspath(path)}: expected at least one curve, found none")
     # y points up in DXF and G-code and down in SVG; the others hold it as the shape has it.
     flip = shape.y_down if suffix in GCODE | {".dxf"} else suffix == ".svg" and not shape.y_down
-    sides = np.array([1.0, -1.0 if flip else 1.0])
+    by = factor(suffix, shape.unit, units)
+    sides = np.array([1.0, -1.0 if flip else 1.0]) / by
     worst, where, gap = (-1.0, math.nan), (math.nan, math.nan), 0.0
     no_extent = 0
     lines: dict[float, list[Floats]] = {}
@@ -128,9 +135,9 @@ def measure_file(
         if math.isnan(level):
             first = float(signed_distance(shape, curve.at(np.zeros(1)) * sides)[0])
             level = float(distances[int(np.argmin(np.abs(np.asarray(distances) - first)))])
-        line = flattened(curve.at, curve.count, tolerance)
+        line = flattened(curve.at, curve.count, by * tolerance)
         lines.setdefault(level, []).append(line * sides)
-        gap = max(gap, math.dist(line[0], line[-1]))
+        gap = max(gap, math.dist(line[0], line[-1]) / by)
         no_extent += float(np.ptp(line, axis=0).max()) <= _ULPS * np.spacing(np.abs(line).max())
         found, point = _worst_of(curve, level, shape, sides)
         if not found <= worst[0]:
@@ -146,7 +153,7 @@ def measure_file(
         {level: len(some) for level, some in lines.items()},
         gap,
         int(no_extent),
-        tuple(replace(c, point=(c.point[0], c.point[1] * sides[1])) for c in checked),
+        tuple(replace(c, point=(c.point[0] / sides[0], c.point[1] / sides[1])) for c in checked),
     )
 
 

@@ -74,7 +74,13 @@ def contours_at(
         return Attempt([], True)
     fit = _fit_clear_of_itself(shape, loops, moved, tolerance)
     contours = [
-        Contour(fit.arcs[a:b], fit.weights[a:b], distance=distance, y_down=shape.y_down)
+        Contour(
+            fit.arcs[a:b],
+            fit.weights[a:b],
+            distance=distance,
+            y_down=shape.y_down,
+            unit=shape.unit,
+        )
         for a, b in pairwise(fit.first)
     ]
     # After a shift nothing runs back along itself: turns back are tips, nearly as sharp as cusps.

@@ -82,7 +82,9 @@ def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
     every[:, 2] = np.roll(every[:, 0], -1, axis=0)
     every[lines, 1] = 0.5 * (every[lines, 0] + every[lines, 2])
     every += shape.boundary.origin
-    return Contour(every, np.array(weights), distance=distance, y_down=shape.y_down)
+    return Contour(
+        every, np.array(weights), distance=distance, y_down=shape.y_down, unit=shape.unit
+    )
 
 
 def _disks(shape: Shape, tolerance: float) -> tuple[Floats, Floats]:

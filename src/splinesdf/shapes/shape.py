@@ -264,7 +264,9 @@ class Shape:
         """
         given = list(contours)
         y_down = any(getattr(contour, "y_down", False) for contour in given)
-        return cls.from_pieces(contour_loops(given), name=name, y_down=y_down, once=False)
+        unit = getattr(given[0], "unit", None) if given else None
+        loops = contour_loops(given)
+        return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit)
 
     @classmethod
     def from_shapely(cls, geometry: object, *, name: str = "") -> Shape:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -238,7 +238,9 @@ class SplineSDF:
         contour that directly encloses it as its ``parent``.
         """
         self._check_quadratic("another for level sets")
-        return nested(contours(self.mesh, self.ordinates, level, y_down=self.y_down))
+        found = contours(self.mesh, self.ordinates, level, y_down=self.y_down)
+        unit = None if self.shape is None else self.shape.unit
+        return nested([replace(contour, unit=unit) for contour in found])
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the spline to an ``.npz`` file, its shape and provenance with it.

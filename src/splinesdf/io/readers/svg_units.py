@@ -63,8 +63,8 @@ def unit_note(root: ElementTree.Element) -> str | None:
     if abs(length - 1.0) <= _PRINTED:
         return None
     return (
-        f"the drawing says {said}: one unit is {length:.5g} {name}; nothing is converted, give "
-        "the factor to your CAM program"
+        f"the drawing says {said}: one unit is {length:.5g} {name}; DXF and G-code are written "
+        "in millimeters, or inches (--units inch)"
     )
 
 

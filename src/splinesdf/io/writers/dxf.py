@@ -13,15 +13,13 @@ from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind, elements, unfolded
 from splinesdf.contours.contour import Contour, box, upright
 from splinesdf.errors import MissingExtraError
-from splinesdf.io.writers.options import Options
+from splinesdf.io.writers.options import DXF_UNITS, MILLIMETERS, Options
 
 # Bits of a SPLINE's flags (group code 70).
 _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
 # An arc that readers of its center would miss by more than this share of its chord is drawn as a
 # spline, which is exact. Smaller, and arcs that others make with few digits are splines.
 _FLAT = 1e-9
-# $INSUNITS: none, as ezdxf's own default is meters.
-_UNITS = {None: 0, "inch": 1, "mm": 4}
 
 
 def dxf_text(contours: Sequence[Contour], options: Options) -> str:
@@ -43,7 +41,9 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
             'writing DXF needs ezdxf: python -m pip install "splinesdf[dxf]"'
         ) from error
     document = new("R2010")
-    document.header["$INSUNITS"] = _UNITS[options.units]
+    # None if it is not known, as ezdxf's own default is meters.
+    unit = options.unit if options.units is None else MILLIMETERS[options.units]
+    document.header["$INSUNITS"] = 0 if unit is None else DXF_UNITS.get(unit, 0)
     document.header["$MEASUREMENT"] = 0 if options.units == "inch" else 1
     space = document.modelspace()
     chains = [upright(contour) for contour in contours]

@@ -68,6 +68,37 @@ class Options:
     arcs: bool = False
     units: str | None = None
     milling: Milling | None = None
+    unit: float | None = None  # millimeters of the contours' own unit, if it is known
+
+
+# Millimeters of the units that can be asked for, and of those that DXF has a number for.
+MILLIMETERS = {"mm": 1.0, "inch": 25.4}
+DXF_UNITS = {25.4: 1, 304.8: 2, 1.0: 4, 10.0: 5, 1000.0: 6, 1e6: 7, 914.4: 10, 1e-3: 13, 100.0: 14}
+# Factors that differ by less than this share from 1 are 1: it is what the printed digits of a
+# drawing's size leave.
+_PRINTED = 1e-6
+
+
+def factor(suffix: str, unit: float | None, units: str | None) -> float:
+    """By what the numbers of a file are larger than the coordinates.
+
+    G-code is in millimeters or inches, and so is DXF if that is asked for, or if it has no number
+    for the coordinates' own unit. Other formats, and coordinates whose unit is not known, are
+    written as they are.
+
+    Parameters
+    ----------
+    suffix : str
+    unit : float or None
+        How many millimeters one unit of the coordinates is.
+    units : {"mm", "inch"} or None
+    """
+    if unit is None or suffix not in GCODE | {".dxf"}:
+        return 1.0
+    if units is None and suffix == ".dxf" and unit in DXF_UNITS:
+        return 1.0
+    found = unit / MILLIMETERS[units or "mm"]
+    return 1.0 if abs(found - 1.0) <= _PRINTED else found
 
 
 def check_options(suffix: str, **given: Any) -> None:

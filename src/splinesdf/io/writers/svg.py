@@ -40,8 +40,12 @@ def svg_text(contours: Sequence[Contour], options: Options) -> str:
     size = max(xmax - xmin, ymax - ymin)
     margin = _MARGIN * size
     view = [xmin - margin, ymin - margin, xmax - xmin + 2 * margin, ymax - ymin + 2 * margin]
+    size_said = ""
+    if options.unit is not None:
+        width, height = (f"{options.unit * side:.9g}mm" for side in view[2:])
+        size_said = f'width="{width}" height="{height}" '
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{_numbers(view)}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size_said}viewBox="{_numbers(view)}" '
         'data-stroke="centre">',  # so that `read` takes the strokes for closed lines
         f'<g fill="none" stroke-width="{size / 400.0:.6g}" stroke-linejoin="round">',
     ]
