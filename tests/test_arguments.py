@@ -55,7 +55,7 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
     **dict.fromkeys(("points", "distances", "control", "knots", "weights", "levels"), "array"),
-    **dict.fromkeys(("boxes", "ordinates", "arcs_", "x_", "y_"), "array"),
+    **dict.fromkeys(("boxes", "ordinates", "arcs_", "x_", "y_", "values"), "array"),
     **dict.fromkeys(("domain", "band", "t"), "numbers"),
     "start": "numbers",
     **dict.fromkeys(

@@ -24,6 +24,7 @@ from splinesdf.io.writers.options import Milling
 from splinesdf.meshes.lattice import DistanceGrid
 from splinesdf.offsets.offset import offset
 from splinesdf.shapes.shape import Shape
+from splinesdf.splines.samples import from_level_set
 from splinesdf.splines.spline import SplineSDF, load
 
 __version__ = "0.1.0"
@@ -43,6 +44,7 @@ __all__ = [
     "as_arcs",
     "closest_point",
     "fit",
+    "from_level_set",
     "interpolate",
     "load",
     "offset",
