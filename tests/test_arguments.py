@@ -96,6 +96,8 @@ SPECIAL = {
     ("Grid.from_lines", "y"): "array",
     ("Grid", "x"): "array",
     ("Grid", "y"): "array",
+    ("from_level_set", "x"): "array",
+    ("from_level_set", "y"): "array",
     ("Shape.from_pieces", "loops"): "pieces",
     ("Quadtree.from_splits", "shape"): "other",
 }
@@ -148,6 +150,10 @@ GOOD_IN: dict[tuple[str, str], Any] = {
     ("Grid", "x"): np.array([0.0, 1.0, 2.0]),
     ("Grid", "y"): np.array([0.0, 1.0, 2.0]),
     ("Contour", "closed"): True,
+    ("from_level_set", "x"): np.arange(9.0),
+    ("from_level_set", "y"): np.arange(9.0),
+    ("from_level_set", "values"): np.add.outer((np.arange(9.0) - 4) ** 2, (np.arange(9.0) - 4) ** 2)
+    - 4.0,
 }
 
 
