@@ -9,6 +9,7 @@ from splinesdf.contours.kernels import biarcs
 from tests.compiled import from_python
 
 biarc = from_python(biarcs._biarc)
+off = from_python(biarcs._off)
 
 
 def knot(point: np.ndarray, angle: float) -> np.ndarray:
@@ -49,3 +50,18 @@ def test_a_line_is_in_four_equal_parts() -> None:
     start, end = knot(np.zeros(2), 0.3), knot(8.0 * np.array([np.cos(0.3), np.sin(0.3)]), 0.3)
     assert biarc(start, end) == pytest.approx(2.0, rel=1e-15)
     assert biarc(end, start) == 0.0
+
+
+@pytest.mark.parametrize("bend", [-2.0, -0.1, 0.5, 3.0])
+def test_points_inside_and_outside_a_circle_are_as_far_as_their_radius_says(bend: float) -> None:
+    """Seen from any of its points; next to the center it is not said."""
+    random = np.random.default_rng(3)
+    for angle, away in random.uniform(-3.0, 3.0, (50, 2)):
+        normal = np.array([np.cos(angle), np.sin(angle)])
+        center = normal / bend
+        share = 0.51 + 0.3 * abs(away)
+        around = np.array([np.cos(away), np.sin(away)]) * share / abs(bend)
+        found = off(*(center + around), *normal, bend)
+        assert found == pytest.approx(abs(share - 1.0) / abs(bend), rel=1e-12)
+        inner = 0.49 / share * around
+        assert off(*(center + inner), *normal, bend) == np.inf

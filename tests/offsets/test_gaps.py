@@ -213,3 +213,22 @@ def test_where_the_gap_to_a_wall_is_zero_is_found(name: str) -> None:
             assert min(ends) <= t <= max(ends)
             assert abs(gap(t, far)) <= 1e-13 * shape.size
     assert found > 10
+
+
+@pytest.mark.parametrize("root", [0.02, 0.3, 0.71, 0.999])
+@pytest.mark.parametrize("bend", [-0.9, 0.0, 3.0])
+@pytest.mark.parametrize("ends", [(0.0, 1.0), (1.0, 0.0)])
+def test_secants_find_where_a_gap_is_zero_with_few_looks(
+    root: float, bend: float, ends: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked = []
+
+    def gap(*arguments: float) -> float:
+        looked.append(t := arguments[4])
+        return (ends[1] - ends[0]) * (t - root) * (1.0 + bend * t)
+
+    monkeypatch.setattr(clearance, "clearance_at", gap)
+    t = clearance._passes.py_func(None, None, None, 0, ends, None)
+    assert t == pytest.approx(root, abs=1e-15)
+    # Halvings alone take about fifty.
+    assert len(looked) < 30
