@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 import splinesdf as ss
 from splinesdf.shapes.sources.formula import parse_curve
-from tests.examples import examples
 
 Function = Callable[[np.ndarray], np.ndarray]
 T = np.linspace(0.1, 0.9, 17)
@@ -390,25 +389,3 @@ def test_random_trees_have_the_slope_of_their_differences(tree: Tree) -> None:
         tame = np.isfinite(difference) & np.isfinite(third) & (third * h < 1e-3)
         tame &= np.abs(second) * h < 1e-3 * (1.0 + np.abs(first))
     assert (np.abs(first - difference) <= allowed)[tame].all()
-
-
-@examples(300)
-@given(st.text(alphabet=st.characters(codec=None), max_size=40))
-def test_any_text_is_read_or_refused(text: str) -> None:
-    assert "\n" not in refused(text)
-
-
-@examples(300)
-@given(
-    st.lists(
-        st.sampled_from(
-            [*"t+-*/^().,[]{}'\":=<>!@#%&|~;\\ \n\t0123456789eEjx_", "sin", "pi", "**", "lambda "]
-        ),
-        max_size=25,
-    ).map("".join)
-)
-def test_any_likely_text_is_read_or_refused(text: str) -> None:
-    refusal = refused(text)
-    assert "\n" not in refusal
-    if not refusal:
-        assert values(text).shape == T.shape

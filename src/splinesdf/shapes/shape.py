@@ -264,16 +264,14 @@ class Shape:
         """
         given = list(contours)
         y_down = any(getattr(contour, "y_down", False) for contour in given)
-        unit = getattr(given[0], "unit", None) if given else None
-        loops = contour_loops(given)
+        loops, unit = contour_loops(given), getattr(given[0], "unit", None)
         return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit)
 
     @classmethod
     def from_shapely(cls, geometry: object, *, name: str = "") -> Shape:
         """The union of all polygons of a geometry of Shapely, or of its like.
 
-        It is a GeoJSON object or has a ``__geo_interface__``; points and lines are left out, and
-        named in the notes.
+        It is a GeoJSON object or has a ``__geo_interface__``; points and lines are left out.
         """
         found = polygons_of(geometry)
         (loops, fill), notes = found.united(None), found.notes()
