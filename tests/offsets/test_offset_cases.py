@@ -163,8 +163,8 @@ def test_few_arcs_and_simple_rings(
 
 # Each in a process of its own: they had no end, or took gigabytes.
 ENDLESS = {
-    "part, 1e4 sizes": ('read_shape("part", None, False)', 1e6, 1e-2, 9),
-    "part, 1e7 sizes": ('read_shape("part", None, False)', 1e9, 1.0, 10),
+    "part, 1e4 sizes": ('read_shape("part", {})', 1e6, 1e-2, 9),
+    "part, 1e7 sizes": ('read_shape("part", {})', 1e9, 1.0, 10),
     "polygon, 2e5 sizes": ("ss.Shape.from_points([(0, 0), (4, 0), (3, 3), (1, 4)])", 1e6, 1e-3, 11),
     "polygon, 2e6 sizes": ("ss.Shape.from_points([(0, 0), (4, 0), (3, 3), (1, 4)])", 1e7, 1e-3, 11),
     "lens": ('ss.read("tests/data/offsets/lens_zero_speed_corners.json")', 0.01, 1e-4, 10),
@@ -263,22 +263,45 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
 
 def test_a_drawing_that_says_its_unit_is_not_called_another(run: Run, tmp_path: Path) -> None:
     """100 mm are 378 units: in mm, or with a note."""
-    _, said = run("behaviour_mm.svg", "-d", "0.1", "--units", "mm", "-o", "x.dxf")
+    _, said = run(
+        "behaviour_mm.svg", "--stroke", "centre", "-d", "0.1", "--units", "mm", "-o", "x.dxf"
+    )
     if re.search(r"note: .*\bmm\b", said) is None:
         box = bbox.extents(ezdxf.readfile(tmp_path / "x.dxf").modelspace())
         assert box.size.x == pytest.approx(80.0 + 0.2, abs=0.3)
 
 
 def test_open_paths_end_to_end_are_one_loop(run: Run, tmp_path: Path) -> None:
-    run("behaviour_joined.svg", "--close", "-d", "1", "--tolerance", "1e-3", "-o", "x.svg")
-    shape = ss.read(DATA / "behaviour_joined.svg", close=True)
+    run(
+        "behaviour_joined.svg",
+        "--stroke",
+        "centre",
+        "--close",
+        "-d",
+        "1",
+        "--tolerance",
+        "1e-3",
+        "-o",
+        "x.svg",
+    )
+    shape = ss.read(DATA / "behaviour_joined.svg", close=True, stroke="centre")
     contours = ss.offset(shape, 1.0, tolerance=1e-3)
     assert [len(contour.arcs) for contour in contours] == [8]
     assert contours[0].length == pytest.approx(160.0 + 2.0 * math.pi, rel=1e-9)
 
 
 def test_holes_are_cut_before_the_outline(run: Run, tmp_path: Path) -> None:
-    run("behaviour_washer.svg", "--fill", "evenodd", "-d", "0.15", "-o", "x.nc")
+    run(
+        "behaviour_washer.svg",
+        "--stroke",
+        "centre",
+        "--fill",
+        "evenodd",
+        "-d",
+        "0.15",
+        "-o",
+        "x.nc",
+    )
     text = (tmp_path / "x.nc").read_text()
     starts = [
         np.hypot(float(x) - 30.0, float(y) + 30.0) for x, y in re.findall(r"G0 X(\S+) Y(\S+)", text)
@@ -288,6 +311,8 @@ def test_holes_are_cut_before_the_outline(run: Run, tmp_path: Path) -> None:
 
 
 def test_open_lines_beside_closed_ones_are_named(run: Run, tmp_path: Path) -> None:
-    out, said = run("behaviour_mixed.svg", "-d", "1", "--tolerance", "1e-3", "-o", "x.svg")
+    out, said = run(
+        "behaviour_mixed.svg", "--stroke", "centre", "-d", "1", "--tolerance", "1e-3", "-o", "x.svg"
+    )
     assert "note: " in said
     assert re.search(r"\+1 +1 ", out)
