@@ -89,14 +89,19 @@ def test_random_chains_of_cubics_against_40_digits() -> None:
         assert worst_miss(shape, precise_distance(pieces(shape), points), points) < ROUNDING
 
 
-def check_against_polylines(shape: ss.Shape, points: np.ndarray, deviation: float) -> None:
-    """Distances within the polylines' deviation, and no wrong side farther away than that."""
+def check_against_polylines(
+    shape: ss.Shape, points: np.ndarray, deviation: float, least: float = 0.95
+) -> None:
+    """Distances within the polylines' deviation, and no wrong side farther away than that.
+
+    At least so many of the points must be where the polylines are sure.
+    """
     expected = oracles.sure_polyline_distance(shape, points, deviation)
     assert expected is not None
     distance, sure = expected
     found = ss.signed_distance(shape, points)
     allowed = deviation + oracles.SNAP * np.abs(points).max()
-    assert np.mean(sure) > 0.95
+    assert np.mean(sure) > least
     assert np.max(np.abs(np.abs(found) - np.abs(distance)), where=sure, initial=0.0) < allowed
     clear = sure & (np.abs(distance) > allowed)
     assert np.array_equal(found[clear] < 0, distance[clear] < 0)
@@ -111,7 +116,9 @@ def test_glyphs_against_polylines(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(icons()))
 def test_icons_against_polylines(name: str) -> None:
     shape = icons()[name]
-    check_against_polylines(shape, questions(shape, 150, 8), DEVIATION * shape.size)
+    # Two elements of this one touch along an edge: there polylines are sure of 90 % (of 2400 points).
+    least = 0.9 if name == "bing" else 0.95
+    check_against_polylines(shape, questions(shape, 150, 8), DEVIATION * shape.size, least)
 
 
 @pytest.mark.parametrize("name", sorted(outlines()))

@@ -11,6 +11,7 @@ from splinesdf.arclets.points import angles, tangents_at
 from splinesdf.offsets.kernels import trim as kernels
 from splinesdf.offsets.tables import Trimmed
 from splinesdf.offsets.trimmed import trimmed
+from tests.compiled import from_python
 from tests.mechanical import AWKWARD, parts
 from tests.offset_checks import judge
 from tests.shapes.test_cusps import cusp
@@ -44,6 +45,7 @@ def looks(shape: ss.Shape, distance: float, tolerance: float) -> int:
         # The kernel run as Python; what it calls stays compiled.
         patch.setattr(kernels, "trim", kernels.trim.py_func)
         patch.setattr(kernels, "Trimmed", kept)
+        patch.setattr(kernels, "_trim", from_python(kernels._trim))
         trimmed(shape, distance, tolerance)
     return int(counted[-1].counts[2])
 
