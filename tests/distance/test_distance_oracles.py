@@ -116,7 +116,7 @@ def test_glyphs_against_polylines(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(icons()))
 def test_icons_against_polylines(name: str) -> None:
     shape = icons()[name]
-    # Two elements of this one touch along an edge: there polylines are sure of 90 % (of 2400 points).
+    # Two of its elements touch along an edge: beside it polylines are sure of 90 % only.
     least = 0.9 if name == "bing" else 0.95
     check_against_polylines(shape, questions(shape, 150, 8), DEVIATION * shape.size, least)
 
