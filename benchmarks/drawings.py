@@ -1,6 +1,6 @@
 """Are sets of SVG drawings read as a renderer fills them? Each file against resvg's picture.
 
-    python -m benchmarks.drawings FOLDER ... [--most 300] [--across 512 1024]
+    python -m benchmarks.drawings FOLDER ... [--most 300] [--across 512 1024] [--stroke outline]
 
 Of each folder files are drawn evenly. Printed are those that are not right, by name and reason, and
 how many of each folder are. Strokes fill nothing here; a drawing of strokes only is right if it is
@@ -21,6 +21,7 @@ def main() -> None:
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--most", type=int, default=300, help="files of each folder")
     parser.add_argument("--across", type=int, nargs="+", default=[512])
+    parser.add_argument("--stroke", choices=("none", "outline"), default="none")
     arguments = parser.parse_args()
     for folder in arguments.folders:
         files = sorted(folder.rglob("*.svg"))
@@ -28,7 +29,7 @@ def main() -> None:
         right, slow = 0, []
         for file in files:
             began = time.process_time()
-            found = [judged(file, across) for across in arguments.across]
+            found = [judged(file, across, stroke=arguments.stroke) for across in arguments.across]
             seconds = time.process_time() - began
             if seconds > 10.0:
                 slow.append(f"{file.name} {seconds:.0f} s")

@@ -16,13 +16,16 @@ import splinesdf as ss
 
 # What is painted beside the fills is taken away before the picture is made.
 _ONLY_FILLS = "<style>*{stroke:none!important}text,image{display:none!important}</style>"
+_NO_TEXT = "<style>text,image{display:none!important}</style>"
 _ROOT = re.compile(r"(<(?:svg:)?svg\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*)(?<!/)>")
 
 # Pixels nearer to the boundary are not judged: hairlines between fills are painted from both sides.
 _EDGE = 0.75
 
 
-def wrong_pixels(text: str, shape: ss.Shape | None, across: int = 512) -> int:
+def wrong_pixels(
+    text: str, shape: ss.Shape | None, across: int = 512, *, strokes: bool = False
+) -> int:
     """How many pixel centers, beyond the edges of the picture, are on the wrong side.
 
     Parameters
@@ -33,8 +36,10 @@ def wrong_pixels(text: str, shape: ss.Shape | None, across: int = 512) -> int:
         What was read of it; None if nothing was.
     across : int
         Pixels in a row.
+    strokes : bool
+        Whether strokes are painted, too.
     """
-    painted = picture(text, across)
+    painted = picture(text, across, strokes=strokes)
     height, width = painted.shape
     x, y, w, h = viewed(text)
     # The document is fitted evenly, its middle in the middle.
@@ -61,12 +66,13 @@ def clear(painted: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(some == every)
 
 
-def picture(text: str, across: int) -> NDArray[np.bool_]:
-    """Which pixels resvg paints, fills only."""
+def picture(text: str, across: int, *, strokes: bool = False) -> NDArray[np.bool_]:
+    """Which pixels resvg paints."""
     import resvg_py
     from PIL import Image
 
-    text = _ROOT.sub(lambda match: f"{match[1]}>{_ONLY_FILLS}", text, count=1)
+    style = _NO_TEXT if strokes else _ONLY_FILLS
+    text = _ROOT.sub(lambda match: f"{match[1]}>{style}", text, count=1)
     png = resvg_py.svg_to_bytes(svg_string=text, width=across)
     return np.asarray(Image.open(io.BytesIO(bytes(png))).convert("RGBA"))[..., 3] > 0
 
@@ -87,12 +93,12 @@ def viewed(text: str) -> tuple[float, float, float, float]:
     return 0.0, 0.0, number("width"), number("height")
 
 
-def judged(path: Path, across: int = 512) -> str:
+def judged(path: Path, across: int = 512, *, stroke: str = "none") -> str:
     """ "" if a drawing is read right, else what is wrong with it or why it is refused."""
     text = path.read_text("utf-8-sig")
     try:
-        shape = ss.read(path)
-        wrong = wrong_pixels(text, shape, across)
+        shape = ss.read(path, stroke=stroke)
+        wrong = wrong_pixels(text, shape, across, strokes=stroke == "outline")
     except ss.InputError as error:
         wrong = wrong_pixels(text, None, across)
         return f"refused: {error}" if wrong or "only strokes" not in str(error) else ""

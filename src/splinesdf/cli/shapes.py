@@ -37,13 +37,13 @@ _READING: tuple[Callable[[Command], Command], ...] = (
     click.option(
         "--stroke",
         type=click.Choice(STROKES),
-        help="SVG: strokes fill nothing, or are closed lines (centre).  [default: none]",
+        help="SVG: strokes fill nothing, what they cover, or closed lines (centre).  [none]",
     ),
     click.option(
         "--ignore",
         type=click.Choice(IGNORED),
         multiple=True,
-        help="SVG: read without clips or masks; may be given again.",
+        help="SVG: read without clips, masks or dashes; again.",
     ),
     click.option("--layer", "layers", multiple=True, help="DXF: this layer; may be given again."),
     click.option("--gap", type=float, help="DXF: join ends so far apart.  [1e-6 of the size]"),

@@ -45,13 +45,13 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     close : bool
         Close open lines by a straight piece instead of refusing them. Those of a drawing are
         joined first where their ends meet, within 1e-6 of its size. (A fill is always closed.)
-    stroke : {"none", "centre"}, optional
+    stroke : {"none", "outline", "centre"}, optional
         Of a drawing's strokes: "none" reads what is filled only, as a stroke fills nothing;
-        "centre" also the closed lines that are stroked and not filled, as a laser or a plotter
-        follows them. None unless the file says otherwise, as those of `write` do.
-    ignore : {"clip-path", "mask"} or several
-        Read a drawing as if it had none of these, which otherwise cut it, or are refused where
-        they are no regions.
+        "outline" also what strokes cover, with their width, caps and joins; "centre" also the
+        closed lines that are stroked and not filled, as a laser or a plotter follows them. None
+        unless the file says otherwise, as those of `write` do.
+    ignore : {"clip-path", "mask", "dashes"} or several
+        Read a drawing as if it had none of these, which otherwise cut it, or are refused.
     layers : str or several, optional
         Of a DXF file these only; all that are not hidden unless given.
     gap : float, optional

@@ -15,12 +15,14 @@ import numpy as np
 
 from splinesdf.arclets.cutting import build_arclets
 from splinesdf.arclets.tables import Arclets
-from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.shapes.boundary import filled_boundary
 from splinesdf.shapes.loops import closed_loops
 
 Loops = list[list[Floats]]
+# Loops of no more than this share of the largest coordinate enclose nothing. It is the limit for
+# shapes as a whole: smaller, they would be refused.
+_POINT = 1e-9
 
 
 def region(loops: Sequence[Sequence[Floats]], fill: str) -> Loops:
@@ -62,12 +64,11 @@ def _filled(loops: Sequence[Sequence[Floats]], least: int) -> Loops:
     """Loops around where the winding number is at least so much, or odd for 0."""
     if not any(len(loop) for loop in loops):
         return []
-    try:
-        closed = closed_loops(loops, close=True)
-    except InputError as error:
-        if "only points" in str(error) or "a single point" in str(error):
-            return []
-        raise
+    every = np.concatenate([piece for loop in loops for piece in loop])
+    # What is that small beside its coordinates is a point, or a line, but for their rounding.
+    if np.ptp(every, axis=0).max() <= _POINT * np.abs(every).max():
+        return []
+    closed = closed_loops(loops, close=True)
     pieces = [piece for loop in closed for piece in loop]
     control = np.concatenate(pieces)
     starts = np.cumsum([0] + [len(piece) for piece in pieces], dtype=np.int64)

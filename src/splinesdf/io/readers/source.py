@@ -10,8 +10,8 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import finite, positive
 from splinesdf.ground.options import check_known, with_options
 
-STROKES = ("none", "centre")
-IGNORED = ("clip-path", "mask")
+STROKES = ("none", "outline", "centre")
+IGNORED = ("clip-path", "mask", "dashes")
 
 
 class Source(NamedTuple):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from splinesdf.errors import InputError
@@ -17,6 +18,7 @@ from splinesdf.io.readers.source import Options, Source
 from splinesdf.io.readers.svg_document import parse_document
 from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_regions import clips_of, filled, is_flat
+from splinesdf.io.readers.svg_strokes import stroked
 from splinesdf.io.readers.svg_units import unit_length, unit_note
 from splinesdf.io.readers.svg_walk import Document, Drawn, Found
 from splinesdf.shapes.region import Loops, region
@@ -32,6 +34,7 @@ class _Drawing(NamedTuple):
 
     fills: list[Drawn]
     lines: list[Drawn]
+    outlined: list[Drawn]  # strokes as regions
     strokes: list[Drawn]  # left out
     unpainted: list[Drawn]  # left out
 
@@ -59,21 +62,22 @@ def svg_shape(source: Source, options: Options) -> Shape:
     notes = (*_notes(drawing, document.found), *repeats_note(repeats), *lines.notes)
     if unit := unit_note(root):
         notes = (*notes, unit)
-    alone = len(fills) == 1 and not lines.loops and not fills[0].context.clips
+    outlined = [stroked(drawn, options.ignore) for drawn in drawing.outlined]
+    alone = len(fills) == 1 and not (lines.loops or outlined or fills[0].context.clips)
     if alone:
         loops, rule = fills[0].loops, options.fill or fills[0].context.rule or "nonzero"
-    elif not fills:
+    elif not (fills or outlined):
         loops, rule = lines.loops, lines.rule
     else:
         parts = [filled(drawn, options.fill) for drawn in fills]
-        parts.append(region(lines.loops, lines.rule))
+        parts += [*outlined, region(lines.loops, lines.rule)]
         loops, rule = [loop for part in parts for loop in part], "nonzero"
     if not loops:
         raise InputError(_nothing(drawing, notes))
     return Shape.from_pieces(
         loops,
         fill=rule,
-        close=options.close or bool(fills),
+        close=options.close or bool(fills or outlined),
         y_down=True,
         name=source.stem,
         notes=notes,
@@ -87,11 +91,14 @@ def _by_paint(elements: list[Drawn], stroke: str) -> _Drawing:
     strokes = [d for d in elements if not d.context.filled and d.context.stroked]
     unpainted = [d for d in elements if not (d.context.filled or d.context.stroked)]
     if stroke == "none":
-        return _Drawing(fills, [], strokes, unpainted)
+        return _Drawing(fills, [], [], strokes, unpainted)
+    if stroke == "outline":
+        stroked = [drawn for drawn in elements if drawn.context.stroked]
+        return _Drawing(fills, [], stroked, [], unpainted)
     if fills or strokes:
-        return _Drawing(fills, strokes, [], unpainted)
+        return _Drawing(fills, strokes, [], [], unpainted)
     # An icon often holds an unpainted frame. If nothing at all is painted, outlines are meant.
-    return _Drawing([], unpainted, [], [])
+    return _Drawing([], unpainted, [], [], [])
 
 
 def _fills(elements: list[Drawn], options: Options, found: Found) -> tuple[list[Drawn], list[str]]:
@@ -105,7 +112,7 @@ def _fills(elements: list[Drawn], options: Options, found: Found) -> tuple[list[
         if options.fill is None:
             loops, again = drawn_once(loops)
             repeats += [f"{drawn.tag} {number}: {words}" for words in again]
-        result.append(Drawn(drawn.tag, loops, drawn.context, drawn.label))
+        result.append(replace(drawn, loops=loops))
     return (result, repeats) if options.fill is not None else _once(result, repeats)
 
 
@@ -161,7 +168,7 @@ def _notes(drawing: _Drawing, found: Found) -> tuple[str, ...]:
     if drawing.strokes and drawing.fills:
         notes.append(
             f"left out: the strokes of {_counted(drawing.strokes)}, which fill nothing: "
-            "stroke='centre' (--stroke centre) reads closed lines"
+            "stroke='outline' (--stroke outline) reads what they cover, 'centre' closed lines"
         )
     notes += found.mended[:_SHOWN]
     if len(found.mended) > _SHOWN:
@@ -178,7 +185,8 @@ def _nothing(drawing: _Drawing, notes: Sequence[str]) -> str:
         return (
             f"expected elements that are filled, got only {what} ({_counted(lines)}"
             f"{''.join(rest)[:200]}), which fill "
-            "nothing: stroke='centre' (--stroke centre) reads the closed lines"
+            "nothing: stroke='centre' (--stroke centre) reads the closed lines, 'outline' what "
+            "strokes cover"
         )
     more = f" ({'; '.join(notes)})" if notes else ""
     return (

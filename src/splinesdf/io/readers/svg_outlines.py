@@ -80,7 +80,7 @@ def _line(element: ElementTree.Element, view: View) -> Outline:
             for x, y in (("x1", "y1"), ("x2", "y2"))
         ]
     )
-    return Outline([[ends]] if np.any(ends[0] != ends[1]) else [])
+    return Outline([[ends]])
 
 
 def _circle(element: ElementTree.Element, view: View) -> Outline:

@@ -16,13 +16,15 @@ from splinesdf.io.readers.svg_document import tag_of
 # Properties that are read, and may stand as attributes.
 PROPERTIES = (
     *("clip-path", "clip-rule", "display", "fill", "fill-opacity", "fill-rule", "filter"),
-    *("font-size", "mask", "opacity", "overflow", "stroke", "stroke-opacity", "stroke-width"),
-    *("transform", "transform-origin", "visibility"),
+    *("font-size", "mask", "opacity", "overflow", "stroke", "stroke-dasharray", "stroke-linecap"),
+    *("stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width"),
+    *("transform", "transform-origin", "vector-effect", "visibility"),
 )
 # Those that children have from their parents.
 INHERITED = frozenset(
-    ("clip-rule", "fill", "fill-opacity", "fill-rule", "font-size", "stroke", "stroke-opacity",
-     "stroke-width", "visibility")
+    ("clip-rule", "fill", "fill-opacity", "fill-rule", "font-size", "stroke", "stroke-dasharray",
+     "stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width",
+     "visibility")
 )  # fmt: skip
 # Rules of style sheets. More: each is tried on each element; none that a program writes has more.
 _MOST_RULES = 10_000

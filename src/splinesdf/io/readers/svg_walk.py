@@ -83,6 +83,7 @@ class Drawn:
     loops: list[list[Floats]]
     context: Context
     label: str
+    own: list[list[Floats]]  # the same in the element's own coordinates, in which it is stroked
 
 
 @dataclass(frozen=True)
@@ -295,7 +296,7 @@ def _drawn(
         if not shape.error:
             found.left_out[f"{tag} without area"] += 1
         return None
-    return Drawn(tag, loops, context, label)
+    return Drawn(tag, loops, context, label, shape.loops)
 
 
 def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:

@@ -1,0 +1,356 @@
+"""The region that a stroke covers: a line of some width along paths, as drawing programs paint it.
+
+path ──cut at corners and where it bends more than the width──> strips ─┐
+        joins at corners, caps at open ends ────────────────────────────┴──> regions, united
+
+A strip is what a segment across the path sweeps. Where the path bends less than half the width its
+border is that of the two parallels; where it bends more, the inner half turns over at the center of
+curvature, and both sides of that are strips of their own. Each is filled by itself, so that nothing
+cancels. Parallels are compiled to pieces that agree with them to a few units in the last place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from splinesdf.arclets.points import bezier_points
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Bools, Floats
+from splinesdf.shapes.region import Loops, region
+from splinesdf.shapes.sources.compiled import compile_arc, compile_curve
+
+# Turns of less (radians) are none: compiled pieces and printed digits turn by less.
+_SMOOTH = 1e-6
+# Roots this near to the real line are on it, where a path bends just as much as the width.
+_REAL = 1e-6
+# A piece is an arc of half the width's radius if it bends by that up to this share. Smaller: where
+# a circle is as wide as the stroke, rounding cuts it into hundreds of stretches; larger: what is
+# open in the middle is closed.
+_ROUND = 1e-7
+# A piece stands still where its speed is less than this share of its largest one.
+_STILL = 1e-12
+# Next to an end with a short handle a parallel is no better known than its direction: it is
+# compiled to so many times the usual tolerance, 4 units in the last place, whichever suffices.
+_LOOSER = (1.0, 1e2, 1e4)
+# Stretches of a piece shorter than this (of its parameter) are left out: rounding made them.
+_SHORT = 1e-9
+
+
+class Pen(NamedTuple):
+    """How a stroke is drawn."""
+
+    width: float
+    cap: str = "butt"  # butt, round, square
+    join: str = "miter"  # miter, round, bevel
+    miter_limit: float = 4.0
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """A curve beside a piece: at an offset to the left, or through the centers of curvature."""
+
+    control: Floats
+    start: float
+    stop: float
+    offset: float | None  # None for the evolute
+
+    def __call__(self, t: Floats) -> Floats:
+        points, first, second = _derivatives(self.control, t)
+        speed = np.hypot(first[:, 0], first[:, 1])
+        normal = np.stack([-first[:, 1], first[:, 0]], axis=1) / speed[:, None]
+        if self.offset is not None:
+            return np.asarray(points + self.offset * normal)
+        bend = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / speed**3
+        # Where handles have no length the curve bends without bound, about itself.
+        bent = (bend != 0.0) & ~_still(self.control, t)
+        radius = np.where(bent, 1.0 / np.where(bent, bend, 1.0), 0.0)
+        return np.asarray(points + radius[:, None] * normal)
+
+
+def stroke_region(loops: Sequence[Sequence[Floats]], pen: Pen) -> Loops:
+    """Loops around what a stroke along paths covers, inside on the left; they may overlap.
+
+    Parameters
+    ----------
+    loops : sequence of sequences of ndarray, shape (degree + 1, 2)
+        The control points of each piece of each path. One that ends where it starts is closed.
+    pen : Pen
+    """
+    result: Loops = []
+    for loop in loops:
+        pieces = [piece for path in loop for piece in _regular(path)]
+        if pieces:
+            result += _stroked(pieces, pen)
+        elif len(loop) and pen.cap != "butt":
+            result += _dot(loop[0][0], pen)
+    return result
+
+
+def _stroked(pieces: list[Floats], pen: Pen) -> Loops:
+    closed = np.array_equal(pieces[0][0], pieces[-1][-1])
+    half = 0.5 * pen.width
+    ends = [(_tangent(piece, 0), _tangent(piece, 1)) for piece in pieces]
+    result: Loops = []
+    corners = [
+        k
+        for k in range(len(pieces) if closed else len(pieces) - 1)
+        if abs(_turn(ends[k][1], ends[(k + 1) % len(pieces)][0])) > _SMOOTH
+    ]
+    for k in corners:
+        following = ends[(k + 1) % len(pieces)][0]
+        result += _join(pieces[k][-1], ends[k][1], following, half, pen)
+    if not closed:
+        result += _cap(pieces[0][0], -ends[0][0], half, pen)
+        result += _cap(pieces[-1][-1], ends[-1][1], half, pen)
+    for run in _runs(pieces, set(corners), half, closed):
+        result += _band(run, half)
+    return result
+
+
+class _Stretch(NamedTuple):
+    """A part of a piece, and how it bends throughout.
+
+    ``gentle``: less than the half width; ``tight``: more; ``left``, ``right``: just as much, to
+    that side, so that it is an arc about one center.
+    """
+
+    piece: Floats
+    low: float
+    high: float
+    bend: str
+
+
+def _runs(
+    pieces: list[Floats], corners: set[int], half: float, closed: bool
+) -> list[list[_Stretch]]:
+    """Stretches that go on smoothly and are one band together; tight ones are by themselves."""
+    runs: list[list[_Stretch]] = [[]]
+    for k, piece in enumerate(pieces):
+        for stretch in _stretches(piece, half):
+            if runs[-1] and not _together(runs[-1][-1], stretch):
+                runs.append([])
+            runs[-1].append(stretch)
+        if k in corners:
+            runs.append([])
+    runs = [run for run in runs if run]
+    last = len(pieces) - 1
+    goes_on = closed and len(runs) > 1 and last not in corners
+    if goes_on and _together(runs[-1][-1], runs[0][0]):
+        runs[0] = runs.pop() + runs[0]
+    return runs
+
+
+def _together(one: _Stretch, following: _Stretch) -> bool:
+    return one.bend == following.bend != "tight"
+
+
+def _stretches(piece: Floats, half: float) -> list[_Stretch]:
+    if len(piece) == 2:
+        return [_Stretch(piece, 0.0, 1.0, "gentle")]
+    if _is_round(piece, half):
+        side = _turn(_tangent(piece, 0), _tangent(piece, 1))
+        return [_Stretch(piece, 0.0, 1.0, "left" if side > 0.0 else "right")]
+    result = []
+    for low, high in pairwise(_turning_over(piece, half)):
+        if high - low < _SHORT:
+            continue
+        bend, speed = _bend(piece, 0.5 * (low + high))
+        tight = abs(bend) * half > speed**3
+        result.append(_Stretch(piece, low, high, "tight" if tight else "gentle"))
+    return result
+
+
+def _bend(piece: Floats, t: float) -> tuple[float, float]:
+    """The cross product of the first two derivatives, and the speed."""
+    _, first, second = _derivatives(piece, np.array([t]))
+    bend = float(first[0, 0] * second[0, 1] - first[0, 1] * second[0, 0])
+    return bend, float(np.hypot(*first[0]))
+
+
+def _band(run: list[_Stretch], half: float) -> Loops:
+    """What the segment across a run sweeps."""
+    bend, piece = run[0].bend, run[0].piece
+    if bend == "gentle":
+        return _between(run, -half, half)
+    if bend == "tight":
+        turn, _ = _bend(piece, 0.5 * (run[0].low + run[0].high))
+        inner = math.copysign(half, turn)
+        pairs: list[tuple[float | None, float | None]] = [(0.0, -inner), (0.0, None), (None, inner)]
+        return [loop for one, other in pairs for loop in _between(run, one, other)]
+    return _sector(run, -half if bend == "left" else half)
+
+
+def _is_round(piece: Floats, half: float) -> bool:
+    """Whether it bends by half the width throughout: an arc whose inner parallel is a point."""
+    t = np.linspace(0.0, 1.0, 17)
+    if _still(piece, t).any():
+        return False
+    _, first, second = _derivatives(piece, t)
+    bend = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    share = np.abs(bend) * half / np.hypot(first[:, 0], first[:, 1]) ** 3
+    return bool(np.all(np.abs(share - 1.0) <= _ROUND))
+
+
+def _sector(run: list[_Stretch], outer: float) -> Loops:
+    """What lies between the outer parallel of such arcs and their center."""
+    side = [part for piece, low, high, _ in run for part in _beside(piece, low, high, outer)]
+    if _is_loop(run):
+        return region([side], "nonzero")
+    piece = run[0].piece
+    center = _Beside(piece, 0.0, 1.0, None)(np.linspace(0.0, 1.0, 17)).mean(axis=0)
+    lines = [np.array([side[-1][-1], center]), np.array([center, side[0][0]])]
+    return region([[*side, *lines]], "nonzero")
+
+
+def _is_loop(run: list[_Stretch]) -> bool:
+    """Whether a run ends where it starts, and as smoothly."""
+    first, last = run[0], run[-1]
+    if first.low > 0.0 or last.high < 1.0:
+        return False
+    if not np.array_equal(first.piece[0], last.piece[-1]):
+        return False
+    return abs(_turn(_tangent(last.piece, 1), _tangent(first.piece, 0))) <= _SMOOTH
+
+
+def _between(run: list[_Stretch], one: float | None, other: float | None) -> Loops:
+    """What lies between two curves beside a run."""
+    sides = []
+    for offset in (one, other):
+        side: list[Floats] = []
+        for piece, low, high, _ in run:
+            side += _beside(piece, low, high, offset)
+        sides.append(side)
+    back = [part[::-1] for part in reversed(sides[1])]
+    if _is_loop(run):
+        return region([sides[0], back], "nonzero")
+    across = [np.array([sides[0][-1][-1], back[0][0]]), np.array([back[-1][-1], sides[0][0][0]])]
+    return region([[*sides[0], across[0], *back, across[1]]], "nonzero")
+
+
+def _beside(piece: Floats, low: float, high: float, offset: float | None) -> list[Floats]:
+    if len(piece) == 2 and offset is not None:
+        return [piece + offset * np.array([-1.0, 1.0]) * _tangent(piece, 0)[::-1]]
+    curve, largest = _Beside(piece, low, high, offset), float(np.abs(piece).max())
+    for looser in _LOOSER:
+        with suppress(InputError):
+            return compile_curve(curve, scale=looser * largest)
+    return compile_curve(curve)
+
+
+def _regular(piece: Floats) -> list[Floats]:
+    """The piece without repeated end points, so that it has a direction there; none if a point."""
+    if np.all(piece == piece[0]):
+        return []
+    return [piece]
+
+
+def _derivatives(control: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
+    points, first = bezier_points(control, t)
+    slopes = (len(control) - 1) * np.diff(control, axis=0)
+    if len(slopes) < 2:
+        return points, first, np.zeros_like(first)
+    # Where handles have no length the direction is that of the next difference.
+    _, second = bezier_points(slopes, t)
+    still = _still(control, t)
+    if still.any():
+        first = np.where(still[:, None], np.where(t[:, None] < 0.5, second, -second), first)
+    return points, first, second
+
+
+def _still(control: Floats, t: Floats) -> Bools:
+    """Where a piece has no speed."""
+    slopes = np.diff(control, axis=0)
+    _, first = bezier_points(control, t)
+    most = (len(control) - 1) * float(np.abs(slopes).max())
+    return np.asarray(np.hypot(first[:, 0], first[:, 1]) <= _STILL * most)
+
+
+def _tangent(piece: Floats, end: int) -> Floats:
+    """The unit tangent at the start (0) or the end (1)."""
+    steps = piece[1:] - piece[0] if end == 0 else piece[-1] - piece[-2::-1]
+    size = np.hypot(steps[:, 0], steps[:, 1])
+    step = steps[int(np.argmax(size > 1e-12 * size.max()))]
+    return np.asarray(step / math.hypot(*step))
+
+
+def _turn(one: Floats, other: Floats) -> float:
+    return math.atan2(one[0] * other[1] - one[1] * other[0], float(one @ other))
+
+
+def _turning_over(piece: Floats, half: float) -> list[float]:
+    """Parameters between which the piece bends less than half the width everywhere, or more."""
+    x, y = (_powers(piece[:, axis]) for axis in (0, 1))
+    dx, dy = np.polyder(x), np.polyder(y)
+    ddx, ddy = np.polyder(dx), np.polyder(dy)
+    bend: Floats = np.polysub(np.polymul(dx, ddy), np.polymul(dy, ddx))
+    speed = np.polyadd(np.polymul(dx, dx), np.polymul(dy, dy))
+    cubed = np.polymul(speed, np.polymul(speed, speed))
+    roots = np.roots(np.polysub(cubed, half * half * np.polymul(bend, bend)))
+    real = roots.real[(np.abs(roots.imag) < _REAL) & (roots.real > 0.0) & (roots.real < 1.0)]
+    return [0.0, *np.sort(real).tolist(), 1.0]
+
+
+def _powers(values: Floats) -> Floats:
+    """A Bernstein polynomial by falling powers of its parameter."""
+    degree = len(values) - 1
+    rising = [
+        math.comb(degree, k) * np.diff(values - values[0], k)[0] if k else 0.0
+        for k in range(degree + 1)
+    ]
+    return np.array(rising[::-1])
+
+
+def _join(at: Floats, before: Floats, after: Floats, half: float, pen: Pen) -> Loops:
+    """What is added where a path turns, on the outer side."""
+    turn = _turn(before, after)
+    if pen.join == "round":
+        return _disk(at, half)
+    side = -math.copysign(half, turn)
+    one = at + side * np.array([-before[1], before[0]])
+    other = at + side * np.array([-after[1], after[0]])
+    corners = [at, one, other]
+    # The miter is 1 / sin of half the angle between the pieces, in widths.
+    sine = math.cos(0.5 * turn)
+    if pen.join != "bevel" and sine > 0.0 and pen.miter_limit * sine >= 1.0:
+        middle = 0.5 * (one + other) - at
+        tip = at + middle * (half * half / float(middle @ middle))
+        corners = [at, one, tip, other]
+    return region([_polygon(corners)], "nonzero")
+
+
+def _cap(at: Floats, outward: Floats, half: float, pen: Pen) -> Loops:
+    if pen.cap == "round":
+        return _disk(at, half)
+    if pen.cap != "square":
+        return []
+    normal = half * np.array([-outward[1], outward[0]])
+    far = at + half * outward
+    return region([_polygon([at - normal, far - normal, far + normal, at + normal])], "nonzero")
+
+
+def _dot(at: Floats, pen: Pen) -> Loops:
+    """A path of no length: its caps."""
+    half = 0.5 * pen.width
+    if pen.cap == "round":
+        return _disk(at, half)
+    return _polygon_region(at, half)
+
+
+def _polygon_region(at: Floats, half: float) -> Loops:
+    corners = [at + half * np.array(corner) for corner in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return region([_polygon(corners)], "nonzero")
+
+
+def _disk(at: Floats, radius: float) -> Loops:
+    return [compile_arc(at, (radius, 0.0), (0.0, radius), 0.0, 2.0 * math.pi)]
+
+
+def _polygon(corners: Sequence[Floats]) -> list[Floats]:
+    return [np.array(pair) for pair in zip(corners, [*corners[1:], corners[0]], strict=True)]

@@ -1,0 +1,170 @@
+"""Strokes: against shapely's buffers, segments across the path, distances from it, and pictures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from numpy.typing import NDArray
+
+import splinesdf as ss
+from splinesdf.arclets.points import bezier_points
+from splinesdf.shapes.sources.stroke import Pen, stroke_region
+from splinesdf.shapes.sources.svg_path import parse_path
+from tests.drawings import judged
+from tests.shapes.test_boundary import area, loops
+
+Floats = NDArray[np.float64]
+
+DATA = Path(__file__).parents[1] / "data"
+
+ZIGZAG = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (4.0, 6.0), (-3.0, 9.0)]
+# Some bend less than the width, some more, some in both directions, some just as much.
+CURVES = {
+    "gentle": ("M0 0C10 0 10 10 0 10", 2.0),
+    "tight": ("M0 0C1 3 1 3 2 0", 3.0),
+    "loop": ("M0 0C12 8-10 8 2 0", 2.5),
+    "s": ("M0 0C8 6-6 6 2 12", 4.0),
+    "its own center": ("M2 0A2 2 0 0 1 -2 0", 4.0),
+    "smaller": ("M1 0A1 1 0 0 1 -1 0", 4.0),
+    "quadratic": ("M0 0Q1 6 2 0", 3.0),
+}
+
+
+def stroked(path: str, pen: Pen) -> ss.Shape:
+    return ss.Shape.from_pieces(stroke_region(parse_path(path), pen), once=False)
+
+
+def line(points: list[tuple[float, float]]) -> str:
+    return "M" + "L".join(f"{x} {y}" for x, y in points)
+
+
+def grid(shape: ss.Shape, across: int = 60) -> Floats:
+    x0, y0, x1, y1 = shape.box
+    x, y = np.linspace(x0 - 1, x1 + 1, across), np.linspace(y0 - 1, y1 + 1, across + 1)
+    return np.asarray(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+
+
+def followed(path: str, count: int = 4001) -> list[tuple[Floats, Floats]]:
+    """Points and derivatives along each piece."""
+    t = np.linspace(0.0, 1.0, count)
+    return [bezier_points(piece, t) for loop in parse_path(path) for piece in loop]
+
+
+def swept(path: str, width: float, points: Floats) -> NDArray[np.bool_]:
+    """Whether a segment across the path meets each point: where it is passed, near enough."""
+    met = np.zeros(len(points), dtype=bool)
+    for on, along in followed(path):
+        for k, point in enumerate(points):
+            ahead = ((point - on) * along).sum(axis=1) > 0.0
+            near = np.hypot(*(point - on).T) <= 0.5 * width
+            met[k] |= bool(np.any((ahead[1:] != ahead[:-1]) & near[1:]))
+    return met
+
+
+@pytest.mark.parametrize("join", ["miter", "bevel", "round"])
+@pytest.mark.parametrize("cap", ["butt", "square", "round"])
+def test_polylines_are_shapelys_buffers(cap: str, join: str) -> None:
+    shape = stroked(line(ZIGZAG), Pen(1.0, cap, join))
+    flat = {"butt": "flat", "square": "square", "round": "round"}[cap]
+    mitre = {"miter": "mitre", "bevel": "bevel", "round": "round"}[join]
+    buffer = shapely.LineString(ZIGZAG).buffer(
+        0.5, cap_style=flat, join_style=mitre, mitre_limit=4.0, quad_segs=2000
+    )
+    assert math.isclose(area(shape.boundary), buffer.area, rel_tol=1e-6)
+    points = grid(shape)
+    distance = ss.signed_distance(shape, points)
+    far = np.abs(distance) > 1e-5
+    inside = shapely.contains_xy(buffer, points)
+    np.testing.assert_array_equal(distance[far] < 0.0, inside[far])
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_segments_across_fill_the_region_and_no_more(name: str) -> None:
+    path, width = CURVES[name]
+    shape = stroked(path, Pen(width))
+    points = grid(shape, 30)
+    distance = ss.signed_distance(shape, points)
+    far = np.abs(distance) > 0.01
+    np.testing.assert_array_equal(distance[far] < 0.0, swept(path, width, points[far]))
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_round_strokes_are_what_is_near_the_path(name: str) -> None:
+    path, width = CURVES[name]
+    shape = stroked(path, Pen(width, "round", "round"))
+    points = grid(shape, 30)
+    nearest = np.full(len(points), np.inf)
+    for on, _ in followed(path):
+        nearest = np.minimum(nearest, [np.hypot(*(point - on).T).min() for point in points])
+    # Outside, the distance itself is what is left of the way to the path.
+    distance = ss.signed_distance(shape, points)
+    away = nearest > 0.5 * width + 0.01
+    assert np.all(distance[away] > 0.0)
+    assert np.all(distance[nearest < 0.5 * width - 0.01] < 0.0)
+    np.testing.assert_allclose(distance[away], nearest[away] - 0.5 * width, atol=1e-3)
+
+
+@pytest.mark.parametrize(("radius", "filled"), [(2.0, 8.0 * math.pi), (1.0, 4.0 * math.pi)])
+def test_a_circle_is_a_ring_or_a_disk(radius: float, filled: float) -> None:
+    circle = f"M{radius} 0A{radius} {radius} 0 1 1 {-radius} 0A{radius} {radius} 0 1 1 {radius} 0Z"
+    shape = stroked(circle, Pen(2.0))
+    assert math.isclose(area(shape.boundary), filled, rel_tol=1e-9)
+    assert len(loops(shape.boundary)) == (2 if radius > 1.0 else 1)
+
+
+def test_a_miter_beyond_its_limit_is_a_bevel() -> None:
+    sharp = line([(0.0, 0.0), (10.0, 0.0), (0.0, 1.0)])
+    assert stroked(sharp, Pen(1.0, miter_limit=30.0)).box[2] > 12.0
+    assert stroked(sharp, Pen(1.0, miter_limit=4.0)).box[2] < 11.0
+
+
+def test_a_point_with_caps_is_a_dot() -> None:
+    assert math.isclose(area(stroked("M3 4h0", Pen(2.0, "round")).boundary), math.pi, rel_tol=1e-9)
+    assert math.isclose(area(stroked("M3 4h0", Pen(2.0, "square")).boundary), 4.0, rel_tol=1e-12)
+    assert stroke_region(parse_path("M3 4h0"), Pen(2.0)) == []
+
+
+@pytest.fixture
+def outlined(tmp_path: Path) -> Callable[..., ss.Shape]:
+    def read(body: str, **options: str) -> ss.Shape:
+        file = tmp_path / "drawing.svg"
+        file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{body}</svg>', "utf-8")
+        return ss.read(file, stroke="outline", **options)
+
+    return read
+
+
+def test_what_is_filled_and_its_stroke_are_one_region(outlined: Callable[..., ss.Shape]) -> None:
+    shape = outlined('<rect x="10" y="10" width="20" height="20" stroke="red" stroke-width="4"/>')
+    assert area(shape.boundary) == pytest.approx(24.0**2, rel=1e-12)
+    assert shape.box == pytest.approx((8.0, 8.0, 32.0, 32.0))
+
+
+def test_a_transform_stretches_the_stroke(outlined: Callable[..., ss.Shape]) -> None:
+    path = '<path d="M0 0V10" transform="scale(-3 1)" stroke="red" stroke-width="4" fill="none"/>'
+    shape = outlined(path)
+    assert shape.box == pytest.approx((-6.0, 0.0, 6.0, 10.0), abs=1e-12)
+    constant = path.replace("stroke=", 'vector-effect="non-scaling-stroke" stroke=')
+    shape = outlined(constant)
+    assert shape.box == pytest.approx((-2.0, 0.0, 2.0, 10.0), abs=1e-12)
+
+
+def test_dashes_are_refused_unless_ignored(outlined: Callable[..., ss.Shape]) -> None:
+    path = '<path d="M0 0V10" stroke="red" stroke-width="4" stroke-dasharray="1 2" fill="none"/>'
+    with pytest.raises(ss.InputError, match="without dashes"):
+        outlined(path)
+    whole = outlined(path, ignore="dashes")
+    assert area(whole.boundary) == pytest.approx(40.0, rel=1e-12)
+
+
+ICONS = sorted((DATA / "drawings" / "feather").glob("*.svg"))[::3]
+
+
+@pytest.mark.parametrize("path", ICONS, ids=lambda path: path.stem)
+def test_icons_of_strokes_are_as_painted(path: Path) -> None:
+    assert judged(path, 256, stroke="outline") == ""
