@@ -18,6 +18,9 @@ _ROUNDING_GAP = 1e-13
 # A gap up to this share of the size is a drawing program's printed digits: it is bridged by a
 # straight piece, so the curve itself stays as drawn. Anything wider is an open contour.
 PRINTED_GAP = 1e-6
+# Sizes below this share of the coordinates are refused. Smaller: arcs and transforms are rounded by
+# what can be seen of a shape.
+_LOST = 1e-9
 # A curve whose control points are within this share of the largest coordinate of the line through
 # its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
 # curves that run to and fro along a line keep arcs that only rounding gives a side.
@@ -77,12 +80,17 @@ def extent(loops: Sequence[Sequence[Floats]]) -> tuple[float, float]:
         raise InputError(
             f"expected a size of at least {1.0 / LARGEST:g}, got {size:.3g}: use another unit"
         )
-    if size < 1e-9 * largest:
+    check_place(size, largest, "the shape's")
+    return size, largest
+
+
+def check_place(size: float, largest: float, whose: str = "its") -> None:
+    """Refuse what is so far from the origin that rounding of its coordinates would change it."""
+    if size < _LOST * largest:
         raise InputError(
-            f"the shape's size {size:.3g} is lost beside its coordinates of {largest:.3g}: "
+            f"{whose} size {size:.3g} is lost beside its coordinates of {largest:.3g}: "
             f"move it nearer to the origin"
         )
-    return size, largest
 
 
 def _as_control(piece: ArrayLike) -> Floats:

@@ -19,7 +19,7 @@ import numpy as np
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
-from splinesdf.io.readers.source import Options, Source
+from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.joining import are_open, joined
 from splinesdf.shapes.loops import extent
 from splinesdf.shapes.shape import Shape
@@ -99,8 +99,9 @@ def _document(source: Source) -> tuple[Any, int]:
         except Exception:  # recover mends what it can
             document, auditor = recover.readfile(str(source.path))
     except (DXFError, OSError) as error:
-        text = " ".join(str(error).split())
-        raise InputError(f"expected a DXF file, got a damaged one: {text[:120]}") from error
+        raise InputError(
+            f"expected a DXF file, got a damaged one: {printable(error, 120)}"
+        ) from error
     except Exception as error:  # what a damaged file makes its reader run into
         raise InputError(
             f"expected a DXF file, got one that cannot be read ({type(error).__name__})"

@@ -18,7 +18,7 @@ import numpy as np
 
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
-from splinesdf.io.readers.source import Options, Source
+from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.shape import Shape
 
@@ -104,8 +104,9 @@ def _opened(content: bytes) -> Any:
             "reading woff2 fonts needs brotli: pip install 'splinesdf[fonts]'"
         ) from error
     except (TTLibError, KeyError) as error:
-        text = " ".join(str(error).split())
-        raise InputError(f"expected a font, got a damaged one or none: {text[:80]}") from error
+        raise InputError(
+            f"expected a font, got a damaged one or none: {printable(error, 80)}"
+        ) from error
     if not any(table in font for table in ("glyf", "CFF ", "CFF2")):
         kinds = [words for table, words in _COLORED.items() if table in font]
         raise InputError(f"expected a font with outlines, got {kinds[0] if kinds else 'none'}")

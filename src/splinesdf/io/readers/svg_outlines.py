@@ -12,6 +12,7 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_lengths import View, length
+from splinesdf.shapes.loops import check_place
 from splinesdf.shapes.sources.compiled import compile_arc
 from splinesdf.shapes.sources.svg_path import closing_piece, parse_numbers, parse_path, parse_until
 
@@ -97,6 +98,7 @@ def _whole_ellipse(element: ElementTree.Element, rx: float, ry: float, view: Vie
     if not rx or not ry:
         return Outline([])
     center = _length(element, "cx", view), _length(element, "cy", view)
+    check_place(2.0 * max(rx, ry), max(map(abs, center)))
     return Outline([compile_arc(center, (rx, 0.0), (0.0, ry), 0.0, 2.0 * math.pi)])
 
 
@@ -106,6 +108,7 @@ def _rect(element: ElementTree.Element, view: View) -> Outline:
     width, height = _size(element, "width", view), _size(element, "height", view)
     if not width or not height:
         return Outline([])
+    check_place(max(width, height), max(abs(x), abs(y)))
     rx, ry = _radii(element, view)
     rx, ry = min(rx, 0.5 * width), min(ry, 0.5 * height)
     return Outline(rectangle(x, y, width, height, rx, ry))

@@ -22,9 +22,10 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_clip import Clip, window
 from splinesdf.io.readers.svg_document import tag_of
 from splinesdf.io.readers.svg_lengths import DEFAULT_VIEW, View, fitted, font_size, length, view_box
-from splinesdf.io.readers.svg_outlines import OUTLINES, Outline, outline
+from splinesdf.io.readers.svg_outlines import OUTLINES, Loops, Outline, outline
 from splinesdf.io.readers.svg_style import INHERITED, Styles, is_painted, share
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
+from splinesdf.shapes.loops import check_place
 
 _GROUPS = {"svg", "g", "a", "switch", "symbol", "use"}
 # What is in these is drawn only where something refers to it, or never.
@@ -285,12 +286,14 @@ def _drawn(
     found, label = document.found, label_of(element, tag)
     try:
         shape = outline(element, tag, context.view)
+        loops = _mapped(shape, context.matrix)
+        if context.filled:
+            _check_not_lost(shape.loops, loops)
     except InputError as error:
         found.mended.append(f"left out, as it has an error: {label}: {error}")
         return None
     if shape.error:
         found.mended.append(f"drawn up to an error: {label}: {shape.error}")
-    loops = _mapped(shape, context.matrix)
     if not loops:
         if not shape.error:
             found.left_out[f"{tag} without area"] += 1
@@ -306,6 +309,17 @@ def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:
     if not all(np.isfinite(piece).all() for loop in loops for piece in loop):
         raise InputError("expected finite coordinates, got NaN or infinity")
     return loops
+
+
+def _check_not_lost(before: Loops, after: Loops) -> None:
+    """Refuse what has a size and is next to nothing beside its coordinates, or becomes so."""
+    if not before or not after:
+        return
+    given, points = (
+        np.concatenate([p for loop in loops for p in loop]) for loops in (before, after)
+    )
+    if np.ptp(given, axis=0).any():
+        check_place(float(np.ptp(points, axis=0).max()), float(np.abs(points).max()))
 
 
 @contextmanager
