@@ -21,10 +21,17 @@ PRINTED_GAP = 1e-6
 # Sizes below this share of the coordinates are refused. Smaller: arcs and transforms are rounded by
 # what can be seen of a shape.
 _LOST = 1e-9
+# Pieces of a shape. More: a kilobyte and ten microseconds each, before the first distance; fewer:
+# maps of whole countries are refused.
+MOST_PIECES = 1_000_000
 # A curve whose control points are within this share of the largest coordinate of the line through
 # its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
 # curves that run to and fro along a line keep arcs that only rounding gives a side.
 _STRAIGHT = 4 * 2.220446049250313e-16
+
+
+class TooMuch(InputError):
+    """More than a shape may have: no error of one element that others may stand beside."""
 
 
 def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[list[Floats]]:
@@ -46,7 +53,9 @@ def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[l
         If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
         the coordinates, or nothing is left.
     """
-    arrays = [[_as_control(piece) for piece in loop] for loop in loops]
+    given = [list(loop) for loop in loops]
+    check_count(sum(map(len, given)))
+    arrays = [[_as_control(piece) for piece in loop] for loop in given]
     size, largest = extent(arrays)
     closed = []
     for number, loop in enumerate(arrays):
@@ -82,6 +91,15 @@ def extent(loops: Sequence[Sequence[Floats]]) -> tuple[float, float]:
         )
     check_place(size, largest, "the shape's")
     return size, largest
+
+
+def check_count(count: int) -> None:
+    """Refuse more pieces than a shape may have, before there are tables of them."""
+    if count > MOST_PIECES:
+        raise TooMuch(
+            f"expected at most {MOST_PIECES:,} pieces and corners, got more: leave out what is not "
+            "needed, or simplify it"
+        )
 
 
 def check_place(size: float, largest: float, whose: str = "its") -> None:

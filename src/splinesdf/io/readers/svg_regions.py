@@ -113,6 +113,7 @@ def _mask(
     base = replace(inside(target, own, base), clips=(), uses=(*context.uses, target))
     alpha = "alpha" in (target.get("mask-type", "") + target.get("style", ""))
     loops: Loops = []
+    white, parts = True, list[Loops]()  # of one color, one after the other
     before = document.found.left_out.total()
     for child in target:
         for drawn in walk(document, child, base):
@@ -125,17 +126,25 @@ def _mask(
             if _is_faint(style):
                 raise _refused("mask", "an opacity in it")
             part = filled(drawn, None)
-            if alpha or paint in _WHITE:
-                loops = union([loops, part])
-            elif paint in _BLACK:
-                loops = difference(loops, part)
-            else:
+            if not (alpha or paint in _WHITE or paint in _BLACK):
                 raise _refused("mask", f"the color {paint[:20]!r} in it")
+            if white != (alpha or paint in _WHITE):
+                loops, parts = _painted(loops, parts, white), []
+                white = not white
+            parts.append(part)
+    loops = _painted(loops, parts, white)
     if document.found.left_out.total() > before:
         raise _refused("mask", "texts, images or others in it")
     for clip in clips_of(document, target, own, base):
         loops = clip.cut(loops)
     return Clip(_in_frame(target, context, loops))
+
+
+def _painted(loops: Loops, parts: list[Loops], white: bool) -> Loops:
+    """What a mask lets through after some parts of one color: all at once, or time is a square."""
+    if not parts:
+        return loops
+    return union([loops, *parts]) if white else difference(loops, union(parts))
 
 
 def _in_frame(target: ElementTree.Element, context: Context, loops: Loops) -> Loops:

@@ -26,6 +26,8 @@ INHERITED = frozenset(
 )  # fmt: skip
 # Rules of style sheets. More: each is tried on each element; none that a program writes has more.
 _MOST_RULES = 10_000
+# Selectors, other than by different names, times elements: each is half a microsecond.
+_MOST_MATCHES = 50_000_000
 
 Declaration = tuple[str, str, bool]  # name, value, whether it is important
 
@@ -63,6 +65,7 @@ class Styles:
             for selector in selectors:
                 if selector.pseudo_element is None:
                     matcher.add_selector(selector, declarations)
+        _check_work(matcher, sum(1 for _ in root.iter()))
         for wrapper in cssselect2.ElementWrapper.from_xml_root(root).iter_subtree():
             found = matcher.match(wrapper)
             if found:
@@ -82,6 +85,17 @@ class Styles:
             found.update({name: value for name, value, is_so in declared if is_so == important})
         found = {key: value.strip() for key, value in found.items()}
         return {key: value for key, value in found.items() if value.lower() != "inherit"}
+
+
+def _check_work(matcher: Any, elements: int) -> None:
+    """Refuse style sheets that would take minutes to match."""
+    named = (matcher.class_selectors, matcher.id_selectors, matcher.lower_local_name_selectors)
+    longest = sum(max(map(len, by_name.values()), default=0) for by_name in named)
+    if (longest + len(matcher.other_selectors)) * elements > _MOST_MATCHES:
+        raise InputError(
+            f"expected style sheets with up to {_MOST_MATCHES:,} matches of rules and elements to "
+            "try, got more: give elements attributes instead"
+        )
 
 
 def _is_css(element: ElementTree.Element) -> bool:

@@ -25,7 +25,7 @@ from splinesdf.io.readers.svg_lengths import DEFAULT_VIEW, View, fitted, font_si
 from splinesdf.io.readers.svg_outlines import OUTLINES, Loops, Outline, outline
 from splinesdf.io.readers.svg_style import INHERITED, Styles, is_painted, share
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
-from splinesdf.shapes.loops import check_place
+from splinesdf.shapes.loops import TooMuch, check_count, check_place
 
 _GROUPS = {"svg", "g", "a", "switch", "symbol", "use"}
 # What is in these is drawn only where something refers to it, or never.
@@ -36,6 +36,8 @@ NO_DRAWING = frozenset(
 # Elements that are drawn, those that are referred to as often as they are. More: a few lines of
 # ``use`` in ``use`` take all time and memory; fewer: large drawings are refused.
 _MOST_DRAWN = 1_000_000
+# Elements times the clips around each, all taken together. More: minutes for clips in clips.
+_MOST_CUTS = 100_000
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 
 
@@ -106,6 +108,7 @@ class Document:
     ) -> None:
         self.root, self.ignore, self.clips_of, self.found = root, ignore, clips_of, Found()
         self.styles = Styles(root)
+        self._elements = self._pieces = self._cuts = 0
         self.by_id: dict[str, ElementTree.Element] = {}
         for element in root.iter():
             if name := element.get("id"):
@@ -121,6 +124,19 @@ class Document:
         name = value.strip().removeprefix("url(").rstrip(")").strip().strip("\"'")
         return self.by_id.get(name[1:]) if name.startswith("#") else None
 
+    def count(self, elements: int = 0, pieces: int = 0, cuts: int = 0) -> None:
+        """Refuse more than is drawn in a reasonable time, all uses and clips taken together."""
+        self._elements += elements
+        self._pieces += pieces
+        self._cuts += cuts
+        if self._elements > _MOST_DRAWN:
+            raise InputError(f"expected at most {_MOST_DRAWN:,} elements drawn, got more")
+        if self._cuts > _MOST_CUTS:
+            raise InputError(
+                f"expected elements to be clipped up to {_MOST_CUTS:,} times, got more"
+            )
+        check_count(self._pieces)
+
     def outlines(self) -> Iterator[Drawn]:
         """The elements that draw an outline, in the document's order."""
         yield from walk(self, self.root, _root_context(self.root))
@@ -129,16 +145,13 @@ class Document:
 def walk(document: Document, start: ElementTree.Element, outer: Context) -> Iterator[Drawn]:
     """What an element and its children draw, in order."""
     stack = [(start, outer)]
-    count = 0
     while stack:
         element, around = stack.pop()
         tag = tag_of(element)
         referred = bool(around.uses) and around.uses[-1] is element
         if tag is None or (tag in NO_DRAWING and not referred and element is not start):
             continue
-        count += 1
-        if count > _MOST_DRAWN:
-            raise InputError(f"expected at most {_MOST_DRAWN:,} elements drawn, got more")
+        document.count(elements=1)
         with where(element, tag):
             own = document.styles.of(element)
             if own.get("display", "").lower() == "none" or share(own.get("opacity", "1")) == 0.0:
@@ -289,6 +302,8 @@ def _drawn(
         loops = _mapped(shape, context.matrix)
         if context.filled:
             _check_not_lost(shape.loops, loops)
+    except TooMuch:
+        raise
     except InputError as error:
         found.mended.append(f"left out, as it has an error: {label}: {error}")
         return None
@@ -298,6 +313,7 @@ def _drawn(
         if not shape.error:
             found.left_out[f"{tag} without area"] += 1
         return None
+    document.count(pieces=sum(map(len, loops)), cuts=len(context.clips))
     return Drawn(tag, loops, context, label)
 
 
