@@ -143,9 +143,11 @@ OUTLINES: dict[str, Callable[[ElementTree.Element, View], Outline]] = {
 def _radii(element: ElementTree.Element, view: View) -> tuple[float, float]:
     """``rx`` and ``ry``; one that is missing or ``auto`` is as the other."""
     given = [
-        None if element.get(key, "auto").strip() == "auto" else _size(element, key, view)
+        None if element.get(key, "auto").strip() == "auto" else _length(element, key, view)
         for key in ("rx", "ry")
     ]
+    # As it says, one that is negative is as one that is not given.
+    given = [None if radius is None or radius < 0.0 else radius for radius in given]
     rx = given[0] if given[0] is not None else given[1] or 0.0
     ry = given[1] if given[1] is not None else rx
     return rx, ry

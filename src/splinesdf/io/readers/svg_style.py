@@ -15,14 +15,26 @@ from splinesdf.io.readers.svg_document import tag_of
 
 # Properties that are read, and may stand as attributes.
 PROPERTIES = (
-    *("clip-path", "clip-rule", "display", "fill", "fill-opacity", "fill-rule", "filter"),
-    *("font-size", "mask", "opacity", "overflow", "stroke", "stroke-opacity", "stroke-width"),
+    *("clip-path", "clip-rule", "color", "display", "fill", "fill-opacity", "fill-rule", "filter"),
+    *("font-size", "marker", "marker-end", "marker-mid", "marker-start", "mask", "mask-type"),
+    *(
+        "opacity",
+        "overflow",
+        "stop-color",
+        "stop-opacity",
+        "stroke",
+        "stroke-opacity",
+        "stroke-width",
+    ),
     *("transform", "transform-origin", "visibility"),
 )
+# Numbers of shapes, which style sheets may give as well.
+GEOMETRY = ("cx", "cy", "d", "height", "r", "rx", "ry", "width", "x", "y")
+_READ = frozenset((*PROPERTIES, *GEOMETRY))
 # Those that children have from their parents.
 INHERITED = frozenset(
-    ("clip-rule", "fill", "fill-opacity", "fill-rule", "font-size", "stroke", "stroke-opacity",
-     "stroke-width", "visibility")
+    ("clip-rule", "color", "fill", "fill-opacity", "fill-rule", "font-size", "marker", "marker-end",
+     "marker-mid", "marker-start", "stroke", "stroke-opacity", "stroke-width", "visibility")
 )  # fmt: skip
 # Rules of style sheets. More: each is tried on each element; none that a program writes has more.
 _MOST_RULES = 10_000
@@ -106,7 +118,7 @@ def _declarations(content: Any) -> Iterator[Declaration]:
     import tinycss2
 
     for node in tinycss2.parse_blocks_contents(content, skip_comments=True, skip_whitespace=True):
-        if node.type == "declaration" and node.lower_name in PROPERTIES:
+        if node.type == "declaration" and node.lower_name in _READ:
             yield node.lower_name, tinycss2.serialize(node.value), node.important
 
 
@@ -118,7 +130,7 @@ def _inline(style: str) -> list[Declaration]:
     for declaration in style.split(";"):
         key, colon, value = declaration.partition(":")
         name = key.strip().lower()
-        if colon and name in PROPERTIES:
+        if colon and name in _READ:
             value, mark, word = value.partition("!")
             if not mark or word.strip().lower() == "important":
                 result.append((name, value, bool(mark)))
@@ -130,7 +142,7 @@ def is_painted(paint: str, *opacities: str) -> bool:
     value = paint.strip().lower()
     if value in ("none", "transparent", "") or _alpha(value) == 0.0:
         return False
-    return all(share(opacity) != 0.0 for opacity in opacities)
+    return all(share(opacity) > 0.0 for opacity in opacities)
 
 
 def share(text: str) -> float:

@@ -9,6 +9,7 @@ The stack is explicit because documents may be nested deeper than Python's calls
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -23,7 +24,8 @@ from splinesdf.io.readers.svg_clip import Clip, window
 from splinesdf.io.readers.svg_document import tag_of
 from splinesdf.io.readers.svg_lengths import DEFAULT_VIEW, View, fitted, font_size, length, view_box
 from splinesdf.io.readers.svg_outlines import OUTLINES, Loops, Outline, outline
-from splinesdf.io.readers.svg_style import INHERITED, Styles, is_painted, share
+from splinesdf.io.readers.svg_paint import seen
+from splinesdf.io.readers.svg_style import GEOMETRY, INHERITED, Styles, is_painted, share
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
 from splinesdf.shapes.loops import TooMuch, check_count, check_place
 
@@ -38,6 +40,8 @@ NO_DRAWING = frozenset(
 _MOST_DRAWN = 1_000_000
 # Elements times the clips around each, all taken together. More: minutes for clips in clips.
 _MOST_CUTS = 100_000
+_MARKERS = ("", "-start", "-mid", "-end")
+_CSS_PATH = re.compile(r"""path\(\s*(["'])(.*)\1\s*\)""", re.DOTALL)
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 
 
@@ -51,17 +55,23 @@ class Context:
     clips: tuple[Clip, ...] = ()
     # The elements that are referred to around this one: none may refer to itself.
     uses: tuple[ElementTree.Element, ...] = ()
+    clipping: bool = False  # whether it is a clip that is drawn, where opacity says nothing
+
+    def paint(self, key: str, default: str) -> str:
+        """What a fill or a stroke is painted with."""
+        found = self.style.get(key, default)
+        return self.style.get("color", "black") if found == "currentcolor" else found
 
     @property
     def filled(self) -> bool:
         """Whether a fill is seen."""
-        return is_painted(self.style.get("fill", "black"), self.style.get("fill-opacity", "1"))
+        return is_painted(self.paint("fill", "black"), self.style.get("fill-opacity", "1"))
 
     @property
     def stroked(self) -> bool:
         """Whether a stroke is seen."""
         style = self.style
-        if not is_painted(style.get("stroke", "none"), style.get("stroke-opacity", "1")):
+        if not is_painted(self.paint("stroke", "none"), style.get("stroke-opacity", "1")):
             return False
         width = style.get("stroke-width", "1")
         return share(width.removesuffix("px")) > 0.0 if not width.endswith("%") else True
@@ -113,6 +123,7 @@ class Document:
         for element in root.iter():
             if name := element.get("id"):
                 self.by_id.setdefault(name, element)
+        self._parents: dict[ElementTree.Element, ElementTree.Element] | None = None
 
     def target(self, element: ElementTree.Element) -> ElementTree.Element | None:
         """The element that another one refers to."""
@@ -137,6 +148,19 @@ class Document:
             )
         check_count(self._pieces)
 
+    def around(self, element: ElementTree.Element) -> dict[str, str]:
+        """What an element inherits where it stands, which is not where it is referred to."""
+        if self._parents is None:
+            self._parents = {child: parent for parent in self.root.iter() for child in parent}
+        above = [element]
+        while above[-1] in self._parents:
+            above.append(self._parents[above[-1]])
+        context = Context()
+        for one in reversed(above[1:]):
+            own = seen(self, self.styles.of(one))
+            context = inside(one, {key: own[key] for key in own.keys() & INHERITED}, context)
+        return context.style
+
     def outlines(self) -> Iterator[Drawn]:
         """The elements that draw an outline, in the document's order."""
         yield from walk(self, self.root, _root_context(self.root))
@@ -153,12 +177,19 @@ def walk(document: Document, start: ElementTree.Element, outer: Context) -> Iter
             continue
         document.count(elements=1)
         with where(element, tag):
-            own = document.styles.of(element)
-            if own.get("display", "").lower() == "none" or share(own.get("opacity", "1")) == 0.0:
+            if not passes(element):
+                document.found.left_out[f"{tag[:40]} for other languages or programs"] += 1
+                continue
+            own = seen(document, document.styles.of(element))
+            unseen = not around.clipping and share(own.get("opacity", "1")) <= 0.0
+            if own.get("display", "").lower() == "none" or unseen:
                 if tag in _GROUPS or tag in OUTLINES:
                     document.found.left_out[f"hidden {tag}"] += 1
                 continue
             context = inside(element, own, around)
+            if tag == "use":  # its place is part of its transform, and moves its clips
+                shift = _place(element, context.view)
+                context = replace(context, matrix=product(context.matrix, shift))
             clips = document.clips_of(document, element, own, context)
             if clips:
                 context = replace(context, clips=context.clips + clips)
@@ -169,7 +200,7 @@ def walk(document: Document, start: ElementTree.Element, outer: Context) -> Iter
             elif tag not in OUTLINES:
                 document.found.left_out[tag[:40]] += 1
             else:
-                drawn = _drawn(document, element, tag, context)
+                drawn = _drawn(document, _as_styled(element, own), tag, context)
                 if drawn is not None:
                     yield drawn
 
@@ -178,7 +209,7 @@ def _children(
     document: Document, element: ElementTree.Element, tag: str, context: Context, outer: Context
 ) -> list[tuple[ElementTree.Element, Context]]:
     if tag == "switch":
-        chosen = next((child for child in element if _passes(child)), None)
+        chosen = next((child for child in element if passes(child)), None)
         return [] if chosen is None else [(chosen, context)]
     if tag == "use":
         target = document.target(element)
@@ -188,31 +219,34 @@ def _children(
         if any(target is one for one in context.uses) or target is element:
             document.found.left_out["use of itself"] += 1
             return []
-        shift = Matrix(
-            e=length(element.get("x", "0"), "x", context.view),
-            f=length(element.get("y", "0"), "y", context.view),
-        )
-        moved = replace(
-            context, matrix=product(context.matrix, shift), uses=(*context.uses, target)
-        )
+        moved = replace(context, uses=(*context.uses, target))
         if tag_of(target) in ("symbol", "svg"):
             size = {key: value for key in ("width", "height") if (value := element.get(key))}
-            moved = _in_view(target, moved, size)
-            own = document.styles.of(target)
-            moved = inside(target, own, moved)
+            own = seen(document, document.styles.of(target))
+            if tag_of(target) == "svg":
+                shift = _place(target, moved.view)
+                moved = replace(moved, matrix=product(moved.matrix, shift))
+            else:  # as programs draw it, a symbol has no size of its own
+                size = {"width": "100%", "height": "100%"} | size
+            moved = _in_view(target, own, inside(target, own, moved), size)
             return [(child, moved) for child in target]
         return [(target, moved)]
     if tag == "svg" and element is not document.root:
-        shift = Matrix(
-            e=length(element.get("x", "0"), "x", outer.view),
-            f=length(element.get("y", "0"), "y", outer.view),
-        )
+        shift = _place(element, outer.view)
         context = replace(context, matrix=product(context.matrix, shift))
-        context = _in_view(element, context, {})
+        context = _in_view(element, document.styles.of(element), context, {})
     return [(child, context) for child in element]
 
 
-def _in_view(element: ElementTree.Element, context: Context, size: dict[str, str]) -> Context:
+def _place(element: ElementTree.Element, view: View) -> Matrix:
+    """The shift by ``x`` and ``y``."""
+    x, y = (length(element.get(key, "0"), key, view) for key in "xy")
+    return Matrix(e=x, f=y)
+
+
+def _in_view(
+    element: ElementTree.Element, own: dict[str, str], context: Context, size: dict[str, str]
+) -> Context:
     """The context in the viewport that an ``svg`` or a ``symbol`` opens at the origin."""
     width, height = (
         length(size.get(key, element.get(key, "100%")).replace("auto", "100%"), key, context.view)
@@ -221,7 +255,7 @@ def _in_view(element: ElementTree.Element, context: Context, size: dict[str, str
     box = view_box(element.get("viewBox", ""))
     if width <= 0.0 or height <= 0.0:
         return replace(context, clips=(*context.clips, Clip([])))
-    overflow = element.get("overflow", "hidden")
+    overflow = own.get("overflow", "hidden")
     clips = context.clips
     if overflow not in ("visible", "auto"):
         clips = (*clips, window(context.matrix, width, height))
@@ -234,8 +268,8 @@ def _in_view(element: ElementTree.Element, context: Context, size: dict[str, str
     return replace(context, matrix=matrix, view=view, clips=clips)
 
 
-def _passes(element: ElementTree.Element) -> bool:
-    """Whether a child of ``switch`` may be chosen: in English, and with no extensions."""
+def passes(element: ElementTree.Element) -> bool:
+    """Whether an element may be drawn: in English, and with no extensions."""
     if tag_of(element) is None:
         return False
     languages = element.get("systemLanguage")
@@ -243,7 +277,7 @@ def _passes(element: ElementTree.Element) -> bool:
         known = [word.strip().lower() for word in languages.split(",")]
         if not any(word == "en" or word.startswith("en-") for word in known):
             return False
-    return not element.get("requiredExtensions", "").strip()
+    return element.get("requiredExtensions") is None
 
 
 def _root_context(root: ElementTree.Element) -> Context:
@@ -293,6 +327,16 @@ def _origin(text: str, view: View) -> tuple[float, float]:
     return length(x, "x", view), length(y, "y", view)
 
 
+def _as_styled(element: ElementTree.Element, own: dict[str, str]) -> ElementTree.Element:
+    """The element with the numbers that style sheets give it, which go before its attributes."""
+    given = {key: own[key] for key in GEOMETRY if key in own}
+    if not given:
+        return element
+    if path := _CSS_PATH.fullmatch(given.get("d", "")):
+        given["d"] = path[2]
+    return ElementTree.Element(element.tag, {**element.attrib, **given})
+
+
 def _drawn(
     document: Document, element: ElementTree.Element, tag: str, context: Context
 ) -> Drawn | None:
@@ -307,6 +351,8 @@ def _drawn(
     except InputError as error:
         found.mended.append(f"left out, as it has an error: {label}: {error}")
         return None
+    if any(context.style.get(f"marker{end}", "none") != "none" for end in _MARKERS):
+        found.left_out["markers of " + tag] += 1
     if shape.error:
         found.mended.append(f"drawn up to an error: {label}: {shape.error}")
     if not loops:
