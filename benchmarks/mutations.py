@@ -90,8 +90,9 @@ def _text(text: str, rest: str, reader: str, dice: Chosen) -> str:
     if kind < 0.45 and (numbers := list(_NUMBER.finditer(text))):
         chosen = dice.choice(numbers)
         number = dice.choice(NUMBERS) if dice.random() < 0.8 else dice.choice(numbers)[0]
-        if dice.random() < 0.15:  # as another one, beside which it is almost nothing
-            number = f"{float(number) if _NUMBER.fullmatch(number) else 1.0:.17g}"
+        if dice.random() < 0.25:  # almost where something else is
+            near = float(dice.choice(numbers)[0])
+            number = repr(near + abs(near) * dice.choice((-1, 1)) * 10.0 ** dice.randint(-17, -5))
         return text[: chosen.start()] + number + text[chosen.end() :]
     tokens = _TOKEN.findall(text) or [""]
     words = WORDS.get(".svg" if reader == ".svgz" else reader, ("0",))
