@@ -22,7 +22,7 @@ _CAPACITY = 4096
 # what is drawn. More: minutes and gigabytes for what is most often a mistake (a thousand lines
 # across one another cross 230,000 times, which takes 20 s and 300 MB); fewer: large maps with
 # borders drawn twice are refused.
-_MOST = (500_000, 50_000_000)
+_MOST = (300_000, 50_000_000)
 
 
 class Crossings(NamedTuple):
