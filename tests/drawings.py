@@ -1,4 +1,4 @@
-"""An independent judge of what an SVG document fills: resvg's picture of it, strokes left out.
+"""An independent judge of what an SVG document fills, or strokes as well: resvg's picture of it.
 
 picture ──3 x 3 pixels all painted, or none──> sides of pixel centers <──same?── signs of distances
 """

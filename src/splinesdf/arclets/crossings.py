@@ -10,6 +10,7 @@ import numpy as np
 
 from splinesdf.arclets.interpolation import CHECKS, NODES, TO_CHECKS, TO_CONTROL
 from splinesdf.arclets.tables import Arclets, Interpolation, Met
+from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
 
 # Steps between control points below this share of the arclet's size have no direction: at a
@@ -17,6 +18,11 @@ from splinesdf.ground.arrays import Floats, Ints
 _NO_STEP = 1e-12
 # Room for crossings at first; a drawing with more is searched once more with as much as it needs.
 _CAPACITY = 4096
+# Crossings, and pairs of arcs whose boxes overlap, of a drawing. Both may grow like the square of
+# what is drawn. More: minutes and gigabytes for what is most often a mistake (a thousand lines
+# across one another cross 230,000 times, which takes 20 s and 300 MB); fewer: large maps with
+# borders drawn twice are refused.
+_MOST = (300_000, 50_000_000)
 
 
 class Crossings(NamedTuple):
@@ -35,6 +41,11 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
     tolerance : float
         Nearer than this counts as touching. Crossings within the tolerance of each other, as of
         arcs that touch without an angle, may be found as one or as several.
+
+    Raises
+    ------
+    InputError
+        If there are more than the memory is meant for.
     """
     from splinesdf.arclets.kernels import (
         crossings as intersections,  # Numba loads only when it is used
@@ -56,7 +67,7 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
         met = Met(
             pair=np.empty((capacity, 2), dtype=np.int64),
             at=np.empty((capacity, 2)),
-            found=np.zeros(1, dtype=np.int64),
+            found=np.zeros(2, dtype=np.int64),
         )
         intersections.fill_crossings(
             arclets.boxes,
@@ -65,9 +76,15 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
             arclets.arcs,
             cone,
             tolerance,
+            np.array(_MOST, dtype=np.int64),
             interpolation,
             met,
         )
+        if met.found[1]:
+            raise InputError(
+                f"expected contours with up to {_MOST[0]:,} crossings and touching places, and "
+                f"{_MOST[1]:,} pairs of arcs side by side, got more: draw fewer in one place"
+            )
         count = int(met.found[0])
         if count <= capacity:
             return Crossings(met.pair[:count], met.at[:count])

@@ -90,7 +90,9 @@ class Met(NamedTuple):
 
     pair: Ints  # (capacity, 2) arclets
     at: Floats  # (capacity, 2) their parameters
-    found: Ints  # (1,) how many there are; what is beyond the capacity was not stored
+    # (2,) how many there are, of which those beyond the capacity were not stored; 1 if it was given
+    # up, as there are more, or more arclets beside one another, than were to be looked at
+    found: Ints
 
 
 class Cells(NamedTuple):

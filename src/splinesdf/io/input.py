@@ -130,7 +130,9 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
         yield file
     except InputError as error:
         name = shortened(file.name or str(file))
-        raise type(error)(f"{name if name.isprintable() else repr(name)}: {error}") from error
+        # What a file holds may be quoted, with signs that no terminal should be given.
+        words = "".join(letter if letter.isprintable() else "?" for letter in str(error))
+        raise type(error)(f"{name if name.isprintable() else repr(name)}: {words}") from error
 
 
 def _content(file: Path) -> bytes:

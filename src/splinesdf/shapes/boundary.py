@@ -6,13 +6,18 @@ and the other is not──> kept, turned so that the inside is on the left
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from splinesdf.arclets.crossings import control_points, degrees
 from splinesdf.arclets.cutting import Arcs, Sequences, assemble, ends, split
 from splinesdf.arclets.points import tangents_at
 from splinesdf.arclets.tables import Arclets
-from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import NOTHING, Bools, Floats, Ints, as_points
+from splinesdf.shapes.loops import closed_loops
 from splinesdf.shapes.parts import MERGE, Parts, chain_ends, cut_at_crossings, groups, without_cuts
 from splinesdf.shapes.sides import bounding, look_at_sides
 
@@ -21,6 +26,9 @@ from splinesdf.shapes.sides import bounding, look_at_sides
 # slits and gaps of that width are closed; smaller: contours drawn twice are not recognized, and
 # what lies inside would attract the distance.
 _TOUCHING = 64 * 2.220446049250313e-16
+# Loops smaller than this many times what counts as touching are one point to the crossings, and
+# would be dropped there without a word. Larger: specks that could be told apart are left out.
+_NO_SPECK = 4.0
 # Chains longer than this many times what counts as one point have their ends moved to where others
 # end. Smaller: a chain might shrink to a point.
 _LONG = 8.0
@@ -29,6 +37,42 @@ _LONG = 8.0
 def touching_of(largest: float) -> float:
     """The distance within which curves count as touching, by the largest coordinate."""
     return _TOUCHING * largest
+
+
+def kept_loops(
+    loops: Iterable[Sequence[ArrayLike]], *, close: bool
+) -> tuple[list[list[Floats]], tuple[str, ...]]:
+    """Closed loops without those that are lost beside the coordinates of the others, and a note.
+
+    Those would bound nothing, and still turn the sign of what is near.
+
+    Parameters
+    ----------
+    loops, close
+        As of `closed_loops`.
+    """
+    given = [[as_points(piece) for piece in loop] for loop in loops]
+    closed = closed_loops(given, close=close)
+    every = np.concatenate([piece for loop in closed for piece in loop])
+    counts = np.array([sum(map(len, loop)) for loop in closed])
+    starts = np.cumsum(counts) - counts
+    largest, sides = float(np.abs(every).max()), np.maximum.reduceat(every, starts)
+    size = (sides - np.minimum.reduceat(every, starts)).max(axis=1)
+    lost = size < _NO_SPECK * touching_of(largest)
+    sizes = size[lost].tolist()
+    if len(closed) < len(given):  # even smaller ones are gone, of which some are points
+        every_side = [max(float(np.ptp(p, axis=0).max()) for p in loop) for loop in given if loop]
+        sizes += [side for side in every_side if 0.0 < side <= NOTHING * largest]
+    if not sizes:
+        return closed, ()
+    words = (
+        f"{len(sizes)} contour{'s' if len(sizes) > 1 else ''} of size {max(sizes):.3g} or less, "
+        f"lost beside coordinates of {largest:.3g}"
+    )
+    if lost.all():
+        raise InputError(f"expected contours that enclose something, got {words}")
+    kept = [loop for loop, gone in zip(closed, lost.tolist(), strict=True) if not gone]
+    return kept, (f"left out: {words}",)
 
 
 def filled_boundary(outline: Arclets, least: int, largest: float) -> Arclets | None:

@@ -18,10 +18,20 @@ _ROUNDING_GAP = 1e-13
 # A gap up to this share of the size is a drawing program's printed digits: it is bridged by a
 # straight piece, so the curve itself stays as drawn. Anything wider is an open contour.
 PRINTED_GAP = 1e-6
+# Sizes below this share of the coordinates are refused. Smaller: arcs and transforms are rounded by
+# what can be seen of a shape.
+_LOST = 1e-9
+# Pieces of a shape. More: a kilobyte and ten microseconds each, before the first distance; fewer:
+# maps of whole countries are refused.
+MOST_PIECES = 1_000_000
 # A curve whose control points are within this share of the largest coordinate of the line through
 # its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
 # curves that run to and fro along a line keep arcs that only rounding gives a side.
 _STRAIGHT = 4 * 2.220446049250313e-16
+
+
+class TooMuch(InputError):
+    """More than a shape may have: no error of one element that others may stand beside."""
 
 
 def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[list[Floats]]:
@@ -43,7 +53,9 @@ def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[l
         If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
         the coordinates, or nothing is left.
     """
-    arrays = [[_as_control(piece) for piece in loop] for loop in loops]
+    given = [list(loop) for loop in loops]
+    check_count(sum(map(len, given)))
+    arrays = [[_as_control(piece) for piece in loop] for loop in given]
     size, largest = extent(arrays)
     closed = []
     for number, loop in enumerate(arrays):
@@ -77,12 +89,26 @@ def extent(loops: Sequence[Sequence[Floats]]) -> tuple[float, float]:
         raise InputError(
             f"expected a size of at least {1.0 / LARGEST:g}, got {size:.3g}: use another unit"
         )
-    if size < 1e-9 * largest:
+    check_place(size, largest, "the shape's")
+    return size, largest
+
+
+def check_count(count: int) -> None:
+    """Refuse more pieces than a shape may have, before there are tables of them."""
+    if count > MOST_PIECES:
+        raise TooMuch(
+            f"expected at most {MOST_PIECES:,} pieces and corners, got more: leave out what is not "
+            "needed, or simplify it"
+        )
+
+
+def check_place(size: float, largest: float, whose: str = "its") -> None:
+    """Refuse what is so far from the origin that rounding of its coordinates would change it."""
+    if size < _LOST * largest:
         raise InputError(
-            f"the shape's size {size:.3g} is lost beside its coordinates of {largest:.3g}: "
+            f"{whose} size {size:.3g} is lost beside its coordinates of {largest:.3g}: "
             f"move it nearer to the origin"
         )
-    return size, largest
 
 
 def _as_control(piece: ArrayLike) -> Floats:

@@ -96,6 +96,8 @@ def first_of_each(loops: Sequence[Sequence[Floats]]) -> Ints:
     candidates = candidates[np.argsort(key[candidates], kind="stable")]
     ends = np.searchsorted(key[candidates], key[candidates] + spread, side="right")
     for place, one in enumerate(candidates.tolist()):
+        if result[one] != one:
+            continue  # what is the same as that is so to the first one: else time is a square
         others = candidates[place + 1 : ends[place]]
         apart = np.abs(moments[others] - moments[one])
         others = others[np.all(apart <= room[others] + room[one], axis=1)]

@@ -21,8 +21,7 @@ from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
-from splinesdf.shapes.boundary import filled_boundary, touching_of
-from splinesdf.shapes.loops import closed_loops
+from splinesdf.shapes.boundary import filled_boundary, kept_loops, touching_of
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
 from splinesdf.shapes.sources.conics import contour_loops
@@ -119,11 +118,11 @@ class Shape:
             the coordinates, nothing is left, or ``fill`` is unknown.
         """
         rule = _fill_rule("nonzero" if fill is None else fill)
-        closed = closed_loops(loops, close=close)
+        closed, lost = kept_loops(loops, close=close)
         # By itself, a contour fills the same under nonzero however often it is traced.
         if (fill is None if once is None else once) and (len(closed) > 1 or rule == "evenodd"):
             closed, repeated = drawn_once(closed)
-            notes = (*notes, *repeats_note(repeated))
+            lost += repeats_note(repeated)
         flat = [piece for loop in closed for piece in loop]
         return cls(
             control=np.concatenate(flat),
@@ -132,7 +131,7 @@ class Shape:
             fill=rule,
             y_down=y_down,
             name=name,
-            notes=notes,
+            notes=(*notes, *lost),
             unit=unit,
         )
 

@@ -43,6 +43,7 @@ def fill_crossings(
     arcs: Floats,
     cone: Floats,
     tolerance: float,
+    most: Ints,
     interpolation: Interpolation,
     met: Met,
 ) -> None:
@@ -56,6 +57,8 @@ def fill_crossings(
         Middle and half width of the directions of each arclet, as angles.
     tolerance : float
         Nearer than this counts as touching.
+    most : ndarray, shape (2,)
+        How many places to find, and pairs of arclets to look at, before it is given up.
     interpolation : Interpolation
     met : Met
         Filled.
@@ -63,6 +66,7 @@ def fill_crossings(
     stack = np.empty((_STACK, 2), dtype=np.int64)
     stack[0, 0] = stack[0, 1] = 0
     size = 1
+    looked = 0
     while size > 0:
         size -= 1
         one, other = stack[size, 0], stack[size, 1]
@@ -72,6 +76,10 @@ def fill_crossings(
         count_other = ranges[other, 1] - ranges[other, 0]
         if count_one == 1 and count_other == 1:
             if one != other:
+                looked += 1
+                if met.found[0] > most[0] or looked > most[1]:
+                    met.found[1] = 1
+                    return
                 i, j = ranges[one, 0], ranges[other, 0]
                 _meet(arcs, following, cone, tolerance, interpolation, i, j, met)
             continue

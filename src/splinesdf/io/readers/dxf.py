@@ -19,9 +19,9 @@ import numpy as np
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
-from splinesdf.io.readers.source import Options, Source
+from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.joining import are_open, joined
-from splinesdf.shapes.loops import extent
+from splinesdf.shapes.loops import check_count, extent
 from splinesdf.shapes.shape import Shape
 
 Loops = list[list[Floats]]
@@ -99,8 +99,9 @@ def _document(source: Source) -> tuple[Any, int]:
         except Exception:  # recover mends what it can
             document, auditor = recover.readfile(str(source.path))
     except (DXFError, OSError) as error:
-        text = " ".join(str(error).split())
-        raise InputError(f"expected a DXF file, got a damaged one: {text[:120]}") from error
+        raise InputError(
+            f"expected a DXF file, got a damaged one: {printable(error, 120)}"
+        ) from error
     except Exception as error:  # what a damaged file makes its reader run into
         raise InputError(
             f"expected a DXF file, got one that cannot be read ({type(error).__name__})"
@@ -124,9 +125,10 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
     hidden = {
         layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()
     }
-    for count, entity in enumerate(_resolved(disassemble, document)):
-        if count >= _MOST_ENTITIES:
-            raise InputError(f"expected at most {_MOST_ENTITIES:,} entities, got more")
+    _check_inserts(document)
+    count = 0
+    for number, entity in enumerate(_resolved(disassemble, document)):
+        _check_entities(number)
         kind, layer = entity.dxftype(), entity.dxf.get("layer", "0").lower()
         if layers is not None and layer not in layers:
             left_out["entities on other layers"] += 1
@@ -139,10 +141,49 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
         else:
             try:
                 for pieces in EDGES[kind](entity):
+                    count += len(pieces)
+                    check_count(count)
                     if pieces:
                         yield _Edge(kind, pieces)
             except Flat as reason:
                 left_out[f"{kind} ({reason})"] += 1
+
+
+def _check_entities(count: int) -> None:
+    if count >= _MOST_ENTITIES:
+        raise InputError(f"expected at most {_MOST_ENTITIES:,} entities, got more")
+
+
+def _check_inserts(document: Any) -> None:
+    """Refuse blocks that are inserted too often, also if nothing is in them."""
+    known: dict[str, int] = {}
+
+    def entities(layout: Any) -> int:
+        total = 0
+        for entity in layout:
+            total += 1
+            if entity.dxftype() == "INSERT":
+                rows, columns = (
+                    int(entity.dxf.get(key, 1)) for key in ("row_count", "column_count")
+                )
+                total += (
+                    max(rows, 1) * max(columns, 1) * (1 + of_block(str(entity.dxf.get("name"))))
+                )
+            _check_entities(total)
+        return total
+
+    def of_block(name: str) -> int:
+        key = name.lower()
+        if key not in known:
+            known[key] = 0  # a block in itself: what resolves it refuses that
+            block = document.blocks.get(name)
+            known[key] = 0 if block is None else entities(block)
+        return known[key]
+
+    try:
+        entities(document.modelspace())
+    except RecursionError as error:
+        raise InputError("expected blocks that are not nested so deep") from error
 
 
 def _check_clips(document: Any) -> None:

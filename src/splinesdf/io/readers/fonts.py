@@ -18,7 +18,9 @@ import numpy as np
 
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
-from splinesdf.io.readers.source import Options, Source
+from splinesdf.io.readers.fonts_packed import check_unpacked
+from splinesdf.io.readers.source import Options, Source, printable
+from splinesdf.shapes.loops import check_count
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.shape import Shape
 
@@ -81,11 +83,14 @@ def _loops(font: Any, content: bytes, options: Options) -> tuple[Loops, tuple[st
     scale = 1.0 if options.size is None else options.size / units
     regions: dict[str, Loops] = {}
     loops: Loops = []
+    pieces = 0
     for name, x, y in placed:
         if name not in regions:
             regions[name] = region(_outline(glyphs, name), options.fill or "nonzero")
         shift = np.array([x, y])
         loops += [[scale * (piece + shift) for piece in loop] for loop in regions[name]]
+        pieces += sum(map(len, regions[name]))
+        check_count(pieces)
     return loops, notes
 
 
@@ -97,6 +102,7 @@ def _opened(content: bytes) -> Any:
             "reading fonts needs fontTools: pip install 'splinesdf[fonts]'"
         ) from error
     try:
+        check_unpacked(content)
         font = TTFont(io.BytesIO(content), fontNumber=0, lazy=True)
         font["head"], font["cmap"], font["hmtx"]
     except ImportError as error:
@@ -104,8 +110,9 @@ def _opened(content: bytes) -> Any:
             "reading woff2 fonts needs brotli: pip install 'splinesdf[fonts]'"
         ) from error
     except (TTLibError, KeyError) as error:
-        text = " ".join(str(error).split())
-        raise InputError(f"expected a font, got a damaged one or none: {text[:80]}") from error
+        raise InputError(
+            f"expected a font, got a damaged one or none: {printable(error, 80)}"
+        ) from error
     if not any(table in font for table in ("glyf", "CFF ", "CFF2")):
         kinds = [words for table, words in _COLORED.items() if table in font]
         raise InputError(f"expected a font with outlines, got {kinds[0] if kinds else 'none'}")
@@ -203,8 +210,17 @@ def _outline(glyphs: Any, name: str) -> Loops:
     from fontTools.pens.basePen import BasePen
 
     loops: Loops = []
+    counts = {"parts": 0}
+
+    def count() -> None:
+        counts["parts"] += 1
+        check_count(counts["parts"])
 
     class Pen(BasePen):  # type: ignore[misc]
+        def addComponent(self, *arguments: Any, **named: Any) -> None:  # noqa: N802
+            count()  # a few lines of glyphs within glyphs take all time
+            super().addComponent(*arguments, **named)
+
         def _moveTo(self, point: tuple[float, float]) -> None:  # noqa: N802
             loops.append([])
 
@@ -218,6 +234,7 @@ def _outline(glyphs: Any, name: str) -> Loops:
             self._piece(*points)
 
         def _piece(self, *points: tuple[float, float]) -> None:
+            count()
             piece: Floats = np.array([self._getCurrentPoint(), *points], dtype=np.float64)
             if np.any(piece != piece[0]):
                 loops[-1].append(piece)

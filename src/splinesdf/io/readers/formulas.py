@@ -20,6 +20,8 @@ from splinesdf.shapes.sources.geojson import TYPES
 
 _CURVE = ("x", "y", "t")
 _WHOLE = ("fill", "name")
+# Pieces that all formulas of a file may need: 5 s. One may need 20,000.
+_MOST_PIECES = 200_000
 _FULL_TURN = [0.0, "2*pi"]
 
 
@@ -67,12 +69,17 @@ def _several(
     entries = content[key]
     if not isinstance(entries, list) or not entries:
         raise InputError(f'expected "{key}" to be a list of curves, got {_kind(entries)}')
-    result = []
+    result, count = [], 0
     for number, entry in enumerate(entries, 1):
         try:
             if not isinstance(entry, dict):
                 raise InputError(f'expected an object with "x" and "y", got {_kind(entry)}')
             result.append(read(entry, ()))
+            count += len(result[-1])
+            if count > _MOST_PIECES:
+                raise InputError(
+                    f"expected formulas that need up to {_MOST_PIECES:,} pieces in all, got more"
+                )
         except InputError as error:
             raise InputError(f"{key.removesuffix('s')} {number}: {error}") from error
     return result

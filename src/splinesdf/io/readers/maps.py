@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import re
-from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,7 +15,7 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.shape import Shape
-from splinesdf.shapes.sources.geojson import Polygons, add_polygon, polygons_of
+from splinesdf.shapes.sources.geojson import Polygons, add_polygon, nothing_found, polygons_of
 
 # Brackets within brackets. More: nothing that is drawn has more.
 _DEEPEST = 100
@@ -50,7 +49,7 @@ def _shape(found: Polygons, source: Source, options: Options, *, degrees: bool) 
 def wkt_shape(source: Source, options: Options) -> Shape:
     """The union of all polygons of well-known text, one geometry after the other."""
     tokens = list(_tokens(source.text()))
-    found, at = Polygons([], Counter(), []), 0
+    found, at = nothing_found(), 0
     while at < len(tokens):
         if tokens[at] == ";":
             at += 1

@@ -16,6 +16,7 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.source import Options, Source
+from splinesdf.shapes.loops import check_count
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import polygon
 
@@ -64,7 +65,7 @@ def read_blocks(
     contour: int | None = None
     named = 0  # columns that the header has
     label = ""
-    begun = False
+    begun, count = False, 0
     for number, line in enumerate(lines_of(text), 1):
         if not line.strip():
             _finish(blocks, rows, first)
@@ -93,6 +94,9 @@ def read_blocks(
         if not rows:
             first = number
         rows.append(_point(fields, places, number, finite))
+        count += 1
+        if finite:  # of points to ask about there may be more
+            check_count(count)
     _finish(blocks, rows, first)
     if not blocks:
         raise InputError("expected points, two numbers a line, got none")

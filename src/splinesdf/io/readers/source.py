@@ -39,6 +39,12 @@ class Source(NamedTuple):
         return text
 
 
+def printable(error: object, most: int) -> str:
+    """What another library says, in one line that can be printed, and not all of a long one."""
+    text = " ".join(str(error).split())
+    return "".join(letter if letter.isprintable() else "?" for letter in text)[:most]
+
+
 class Options(NamedTuple):
     """The options of `splinesdf.read`, which says what they mean."""
 

@@ -13,6 +13,9 @@ NAMESPACE = "{http://www.w3.org/2000/svg}"
 # What a packed drawing may expand to, in bytes. More: a small file fills the memory; fewer: large
 # drawings must be unpacked first.
 _MOST_UNPACKED = 200_000_000
+# Tags and attributes of a drawing, by their signs: each takes 100 bytes and more. More: a file of
+# 500 MB takes 10 GB before it is looked at.
+_MOST_TAGS, _MOST_ATTRIBUTES = (4_000_000, "tags"), (5_000_000, "attributes")
 # Entities that a drawing may define, and characters of each. Drawing programs define a dozen names
 # of namespaces; more, or entities within entities, could expand without end.
 _MOST_ENTITIES, _LONGEST_ENTITY = 64, 1000
@@ -36,6 +39,9 @@ def parse_document(content: bytes) -> ElementTree.Element:
         raise InputError("expected text, got binary data: is it really an SVG file?")
     if not text.strip():
         raise InputError("the file is empty")
+    for sign, most, what in (("<", *_MOST_TAGS), ("=", *_MOST_ATTRIBUTES)):
+        if text.count(sign) > most:
+            raise InputError(f"expected a drawing with up to {most:,} {what}, got more")
     _check_entities(text)
     try:
         root = ElementTree.fromstring(text)

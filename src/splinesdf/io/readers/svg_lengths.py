@@ -27,6 +27,9 @@ _FONT = 16.0
 _LENGTH = re.compile(r"\s*([-+.0-9]+(?:e[-+]?\d+)?)\s*(%|[a-z]*)\s*", re.IGNORECASE)
 
 
+_ALIGNED = re.compile(r"(none|x(Min|Mid|Max)Y(Min|Mid|Max))( (meet|slice))?")
+
+
 class View(NamedTuple):
     """What lengths are relative to."""
 
@@ -74,7 +77,15 @@ def length(text: str, key: str, view: View) -> float:
 
 def font_size(text: str, view: View) -> float:
     """The size of a font, which percentages and em are of the surrounding one."""
-    named = {"medium": 16.0, "small": 13.0, "large": 18.0, "x-small": 10.0, "x-large": 24.0}
+    named = {
+        **{"xx-small": 9.0, "x-small": 10.0, "small": 13.0, "medium": 16.0, "large": 18.0},
+        **{
+            "x-large": 24.0,
+            "xx-large": 32.0,
+            "larger": 1.2 * view.font,
+            "smaller": view.font / 1.2,
+        },
+    }
     if text.lower() in named:
         return named[text.lower()]
     if text.endswith("%"):
@@ -102,7 +113,9 @@ def view_box(text: str) -> tuple[float, float, float, float] | None:
 def fitted(box: tuple[float, float, float, float], width: float, height: float, how: str) -> Matrix:
     """The map that fits a view box into a width and a height, as preserveAspectRatio says."""
     x, y, across, down = box
-    words = how.split() or ["xMidYMid"]
+    words = [word for word in how.split() if word != "defer"] or ["xMidYMid"]
+    if not _ALIGNED.fullmatch(" ".join(words)):  # what is not known is as if it were not there
+        words = ["xMidYMid"]
     sx, sy = width / across, height / down
     if words[0] == "none":
         return Matrix(sx, 0.0, 0.0, sy, -x * sx, -y * sy)

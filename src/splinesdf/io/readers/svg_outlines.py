@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -12,10 +13,14 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_lengths import View, length
+from splinesdf.io.readers.svg_style import GEOMETRY
+from splinesdf.shapes.loops import check_place
 from splinesdf.shapes.sources.compiled import compile_arc
 from splinesdf.shapes.sources.svg_path import closing_piece, parse_numbers, parse_path, parse_until
 
 Loops = list[list[Floats]]
+
+_CSS_PATH = re.compile(r"""path\(\s*(["'])(.*)\1\s*\)""", re.DOTALL)
 
 
 class Outline(NamedTuple):
@@ -35,6 +40,16 @@ def outline(element: ElementTree.Element, tag: str, view: View) -> Outline:
     """
     found = OUTLINES[tag](element, view)
     return found._replace(loops=[loop for loop in found.loops if loop])
+
+
+def as_styled(element: ElementTree.Element, own: dict[str, str]) -> ElementTree.Element:
+    """The element with the numbers that style sheets give it, which go before its attributes."""
+    given = {key: own[key] for key in GEOMETRY if key in own}
+    if not given:
+        return element
+    if path := _CSS_PATH.fullmatch(given.get("d", "")):
+        given["d"] = path[2]
+    return ElementTree.Element(element.tag, {**element.attrib, **given})
 
 
 def _path(element: ElementTree.Element, view: View) -> Outline:
@@ -97,6 +112,7 @@ def _whole_ellipse(element: ElementTree.Element, rx: float, ry: float, view: Vie
     if not rx or not ry:
         return Outline([])
     center = _length(element, "cx", view), _length(element, "cy", view)
+    check_place(2.0 * max(rx, ry), max(map(abs, center)))
     return Outline([compile_arc(center, (rx, 0.0), (0.0, ry), 0.0, 2.0 * math.pi)])
 
 
@@ -106,6 +122,7 @@ def _rect(element: ElementTree.Element, view: View) -> Outline:
     width, height = _size(element, "width", view), _size(element, "height", view)
     if not width or not height:
         return Outline([])
+    check_place(max(width, height), max(abs(x), abs(y)))
     rx, ry = _radii(element, view)
     rx, ry = min(rx, 0.5 * width), min(ry, 0.5 * height)
     return Outline(rectangle(x, y, width, height, rx, ry))
@@ -140,9 +157,11 @@ OUTLINES: dict[str, Callable[[ElementTree.Element, View], Outline]] = {
 def _radii(element: ElementTree.Element, view: View) -> tuple[float, float]:
     """``rx`` and ``ry``; one that is missing or ``auto`` is as the other."""
     given = [
-        None if element.get(key, "auto").strip() == "auto" else _size(element, key, view)
+        None if element.get(key, "auto").strip() == "auto" else _length(element, key, view)
         for key in ("rx", "ry")
     ]
+    # As it says, one that is negative is as one that is not given.
+    given = [None if radius is None or radius < 0.0 else radius for radius in given]
     rx = given[0] if given[0] is not None else given[1] or 0.0
     ry = given[1] if given[1] is not None else rx
     return rx, ry

@@ -23,6 +23,7 @@ from splinesdf.shapes.region import Loops, difference, region, union
 _FLAT = 1e-12
 # Colors that make a mask let everything through, or nothing.
 _WHITE = {"white", "#fff", "#ffffff", "rgb(255,255,255)", "rgb(100%,100%,100%)"}
+_OF_THE_BOX = "objectBoundingBox"
 _BLACK = {"black", "#000", "#000000", "rgb(0,0,0)", "rgb(0%,0%,0%)"}
 
 
@@ -83,14 +84,20 @@ def _clip(
     if any(target is one for one in context.uses):
         raise _refused("clip-path", "one that clips itself")
     own = document.styles.of(target)
-    base = _units(document, target, element, context, "clipPathUnits", "clip-path")
-    base = replace(inside(target, own, base), clips=(), style={}, uses=(*context.uses, target))
+    # The clip's own transform is around the units of what is clipped.
+    base = inside(target, own, replace(context, style=document.around(target)))
+    base = _units(document, target, element, base, "clipPathUnits", "clip-path")
+    base = replace(base, clips=(), uses=(*context.uses, target), clipping=True)
     regions = []
     for child in target:
         tag = tag_of(child)
         if tag in ("text", "image"):
             raise _refused("clip-path", f"<{tag}> in it")
         if tag in (None, "title", "desc", "metadata", "style"):
+            continue
+        used = document.target(child) if tag == "use" else child
+        if used is not None and tag_of(used) not in OUTLINES:
+            document.found.left_out[f"{tag} in a clip-path"] += 1  # SVG: there are only shapes
             continue
         for drawn in walk(document, child, base):
             rule = drawn.context.style.get("clip-rule")
@@ -110,9 +117,11 @@ def _mask(
         raise _refused("mask", "one that masks itself")
     base = _units(document, target, element, context, "maskContentUnits", "mask", "userSpaceOnUse")
     own = document.styles.of(target)
+    base = replace(base, style=document.around(target))
     base = replace(inside(target, own, base), clips=(), uses=(*context.uses, target))
-    alpha = "alpha" in (target.get("mask-type", "") + target.get("style", ""))
+    alpha = own.get("mask-type", "").lower() == "alpha"
     loops: Loops = []
+    white, parts = True, list[Loops]()  # of one color, one after the other
     before = document.found.left_out.total()
     for child in target:
         for drawn in walk(document, child, base):
@@ -121,36 +130,52 @@ def _mask(
                 raise _refused("mask", "a stroke in it")
             if not drawn.context.filled:
                 continue
-            paint = style.get("fill", "black").replace(" ", "")
+            paint = drawn.context.paint("fill", "black").replace(" ", "")
             if _is_faint(style):
                 raise _refused("mask", "an opacity in it")
             part = filled(drawn, None)
-            if alpha or paint in _WHITE:
-                loops = union([loops, part])
-            elif paint in _BLACK:
-                loops = difference(loops, part)
-            else:
+            if not (alpha or paint in _WHITE or paint in _BLACK):
                 raise _refused("mask", f"the color {paint[:20]!r} in it")
+            if white != (alpha or paint in _WHITE):
+                loops, parts = _painted(loops, parts, white), []
+                white = not white
+            parts.append(part)
+    loops = _painted(loops, parts, white)
     if document.found.left_out.total() > before:
         raise _refused("mask", "texts, images or others in it")
     for clip in clips_of(document, target, own, base):
         loops = clip.cut(loops)
-    return Clip(_in_frame(target, context, loops))
+    return Clip(_in_frame(document, target, element, context, loops))
 
 
-def _in_frame(target: ElementTree.Element, context: Context, loops: Loops) -> Loops:
-    """What is in the mask's own rectangle, if one is given in user units.
+def _painted(loops: Loops, parts: list[Loops], white: bool) -> Loops:
+    """What a mask lets through after some parts of one color: all at once, or time is a square."""
+    if not parts:
+        return loops
+    return union([loops, *parts]) if white else difference(loops, union(parts))
+
+
+def _in_frame(
+    document: Document,
+    target: ElementTree.Element,
+    element: ElementTree.Element,
+    context: Context,
+    loops: Loops,
+) -> Loops:
+    """What is in the mask's own rectangle, if one is given.
 
     The default is a tenth larger than what is masked, all around.
     """
     keys = ("x", "y", "width", "height")
     if not any(key in target.attrib for key in keys):
         return loops
+    view = context.view
     if target.get("maskUnits", "objectBoundingBox") != "userSpaceOnUse":
-        return loops
+        context = _units(document, target, element, context, "maskUnits", "mask", _OF_THE_BOX)
+        view = view._replace(width=1.0, height=1.0)
     defaults = ("-10%", "-10%", "120%", "120%")
     x, y, width, height = (
-        length(target.get(key, default), key, context.view)
+        length(target.get(key, default), key, view)
         for key, default in zip(keys, defaults, strict=True)
     )
     if width <= 0.0 or height <= 0.0:

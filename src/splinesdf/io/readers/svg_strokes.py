@@ -45,10 +45,14 @@ def stroked(drawn: Drawn, ignore: frozenset[str]) -> Loops:
         "miter" if join in ("miter-clip", "arcs") else join,
         max(limit, 1.0),
     )
-    if style.get("vector-effect") == "non-scaling-stroke":
-        loops = stroke_region(drawn.loops, pen)
-    else:
-        loops = [mapped(loop, matrix) for loop in stroke_region(drawn.own, pen)]
+    try:
+        loops = stroke_region(drawn.loops if drawn.own is None else drawn.own, pen)
+    except InputError as error:
+        raise InputError(
+            f"{drawn.label}: expected a line whose stroke has a border that curves follow: {error}"
+        ) from error
+    if drawn.own is not None:
+        loops = [mapped(loop, matrix) for loop in loops]
         if matrix.a * matrix.d < matrix.b * matrix.c:  # mirrored: the inside is on the right
             loops = [[piece[::-1] for piece in reversed(loop)] for loop in loops]
     for clip in drawn.context.clips:

@@ -15,19 +15,25 @@ from splinesdf.io.readers.svg_document import tag_of
 
 # Properties that are read, and may stand as attributes.
 PROPERTIES = (
-    *("clip-path", "clip-rule", "display", "fill", "fill-opacity", "fill-rule", "filter"),
-    *("font-size", "mask", "opacity", "overflow", "stroke", "stroke-dasharray", "stroke-linecap"),
-    *("stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width"),
+    *("clip-path", "clip-rule", "color", "display", "fill", "fill-opacity", "fill-rule", "filter"),
+    *("font-size", "marker", "marker-end", "marker-mid", "marker-start", "mask", "mask-type"),
+    *("opacity", "overflow", "stop-color", "stop-opacity", "stroke", "stroke-dasharray"),
+    *("stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width"),
     *("transform", "transform-origin", "vector-effect", "visibility"),
 )
+# Numbers of shapes, which style sheets may give as well.
+GEOMETRY = ("cx", "cy", "d", "height", "r", "rx", "ry", "width", "x", "y")
+_READ = frozenset((*PROPERTIES, *GEOMETRY))
 # Those that children have from their parents.
 INHERITED = frozenset(
-    ("clip-rule", "fill", "fill-opacity", "fill-rule", "font-size", "stroke", "stroke-dasharray",
-     "stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width",
-     "visibility")
+    ("clip-rule", "color", "fill", "fill-opacity", "fill-rule", "font-size", "marker", "marker-end",
+     "marker-mid", "marker-start", "stroke", "stroke-dasharray", "stroke-linecap",
+     "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width", "visibility")
 )  # fmt: skip
 # Rules of style sheets. More: each is tried on each element; none that a program writes has more.
 _MOST_RULES = 10_000
+# Selectors, other than by different names, times elements: each is half a microsecond.
+_MOST_MATCHES = 50_000_000
 
 Declaration = tuple[str, str, bool]  # name, value, whether it is important
 
@@ -65,6 +71,7 @@ class Styles:
             for selector in selectors:
                 if selector.pseudo_element is None:
                     matcher.add_selector(selector, declarations)
+        _check_work(matcher, sum(1 for _ in root.iter()))
         for wrapper in cssselect2.ElementWrapper.from_xml_root(root).iter_subtree():
             found = matcher.match(wrapper)
             if found:
@@ -86,6 +93,17 @@ class Styles:
         return {key: value for key, value in found.items() if value.lower() != "inherit"}
 
 
+def _check_work(matcher: Any, elements: int) -> None:
+    """Refuse style sheets that would take minutes to match."""
+    named = (matcher.class_selectors, matcher.id_selectors, matcher.lower_local_name_selectors)
+    longest = sum(max(map(len, by_name.values()), default=0) for by_name in named)
+    if (longest + len(matcher.other_selectors)) * elements > _MOST_MATCHES:
+        raise InputError(
+            f"expected style sheets with up to {_MOST_MATCHES:,} matches of rules and elements to "
+            "try, got more: give elements attributes instead"
+        )
+
+
 def _is_css(element: ElementTree.Element) -> bool:
     return element.get("type", "text/css").strip().lower() in ("", "text/css")
 
@@ -94,7 +112,7 @@ def _declarations(content: Any) -> Iterator[Declaration]:
     import tinycss2
 
     for node in tinycss2.parse_blocks_contents(content, skip_comments=True, skip_whitespace=True):
-        if node.type == "declaration" and node.lower_name in PROPERTIES:
+        if node.type == "declaration" and node.lower_name in _READ:
             yield node.lower_name, tinycss2.serialize(node.value), node.important
 
 
@@ -106,7 +124,7 @@ def _inline(style: str) -> list[Declaration]:
     for declaration in style.split(";"):
         key, colon, value = declaration.partition(":")
         name = key.strip().lower()
-        if colon and name in PROPERTIES:
+        if colon and name in _READ:
             value, mark, word = value.partition("!")
             if not mark or word.strip().lower() == "important":
                 result.append((name, value, bool(mark)))
@@ -118,7 +136,7 @@ def is_painted(paint: str, *opacities: str) -> bool:
     value = paint.strip().lower()
     if value in ("none", "transparent", "") or _alpha(value) == 0.0:
         return False
-    return all(share(opacity) != 0.0 for opacity in opacities)
+    return all(share(opacity) > 0.0 for opacity in opacities)
 
 
 def share(text: str) -> float:

@@ -22,9 +22,11 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_clip import Clip, window
 from splinesdf.io.readers.svg_document import tag_of
 from splinesdf.io.readers.svg_lengths import DEFAULT_VIEW, View, fitted, font_size, length, view_box
-from splinesdf.io.readers.svg_outlines import OUTLINES, Outline, outline
+from splinesdf.io.readers.svg_outlines import OUTLINES, Loops, Outline, as_styled, outline
+from splinesdf.io.readers.svg_paint import seen
 from splinesdf.io.readers.svg_style import INHERITED, Styles, is_painted, share
 from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
+from splinesdf.shapes.loops import TooMuch, check_count, check_place
 
 _GROUPS = {"svg", "g", "a", "switch", "symbol", "use"}
 # What is in these is drawn only where something refers to it, or never.
@@ -35,6 +37,9 @@ NO_DRAWING = frozenset(
 # Elements that are drawn, those that are referred to as often as they are. More: a few lines of
 # ``use`` in ``use`` take all time and memory; fewer: large drawings are refused.
 _MOST_DRAWN = 1_000_000
+# Elements times the clips around each, all taken together. More: minutes for clips in clips.
+_MOST_CUTS = 100_000
+_MARKERS = ("", "-start", "-mid", "-end")
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 
 
@@ -48,17 +53,23 @@ class Context:
     clips: tuple[Clip, ...] = ()
     # The elements that are referred to around this one: none may refer to itself.
     uses: tuple[ElementTree.Element, ...] = ()
+    clipping: bool = False  # whether it is a clip that is drawn, where opacity says nothing
+
+    def paint(self, key: str, default: str) -> str:
+        """What a fill or a stroke is painted with."""
+        found = self.style.get(key, default)
+        return self.style.get("color", "black") if found == "currentcolor" else found
 
     @property
     def filled(self) -> bool:
         """Whether a fill is seen."""
-        return is_painted(self.style.get("fill", "black"), self.style.get("fill-opacity", "1"))
+        return is_painted(self.paint("fill", "black"), self.style.get("fill-opacity", "1"))
 
     @property
     def stroked(self) -> bool:
         """Whether a stroke is seen."""
         style = self.style
-        if not is_painted(style.get("stroke", "none"), style.get("stroke-opacity", "1")):
+        if not is_painted(self.paint("stroke", "none"), style.get("stroke-opacity", "1")):
             return False
         width = style.get("stroke-width", "1")
         return share(width.removesuffix("px")) > 0.0 if not width.endswith("%") else True
@@ -83,7 +94,9 @@ class Drawn:
     loops: list[list[Floats]]
     context: Context
     label: str
-    own: list[list[Floats]]  # the same in the element's own coordinates, in which it is stroked
+    # The same in the element's own coordinates, in which it is stroked: none if the transform does
+    # not stretch its stroke.
+    own: list[list[Floats]] | None
 
 
 @dataclass(frozen=True)
@@ -106,10 +119,12 @@ class Document:
     ) -> None:
         self.root, self.ignore, self.clips_of, self.found = root, ignore, clips_of, Found()
         self.styles = Styles(root)
+        self._elements = self._pieces = self._cuts = 0
         self.by_id: dict[str, ElementTree.Element] = {}
         for element in root.iter():
             if name := element.get("id"):
                 self.by_id.setdefault(name, element)
+        self._parents: dict[ElementTree.Element, ElementTree.Element] | None = None
 
     def target(self, element: ElementTree.Element) -> ElementTree.Element | None:
         """The element that another one refers to."""
@@ -121,6 +136,32 @@ class Document:
         name = value.strip().removeprefix("url(").rstrip(")").strip().strip("\"'")
         return self.by_id.get(name[1:]) if name.startswith("#") else None
 
+    def count(self, elements: int = 0, pieces: int = 0, cuts: int = 0) -> None:
+        """Refuse more than is drawn in a reasonable time, all uses and clips taken together."""
+        self._elements += elements
+        self._pieces += pieces
+        self._cuts += cuts
+        if self._elements > _MOST_DRAWN:
+            raise InputError(f"expected at most {_MOST_DRAWN:,} elements drawn, got more")
+        if self._cuts > _MOST_CUTS:
+            raise InputError(
+                f"expected elements to be clipped up to {_MOST_CUTS:,} times, got more"
+            )
+        check_count(self._pieces)
+
+    def around(self, element: ElementTree.Element) -> dict[str, str]:
+        """What an element inherits where it stands, which is not where it is referred to."""
+        if self._parents is None:
+            self._parents = {child: parent for parent in self.root.iter() for child in parent}
+        above = [element]
+        while above[-1] in self._parents:
+            above.append(self._parents[above[-1]])
+        context = Context()
+        for one in reversed(above[1:]):
+            own = seen(self, self.styles.of(one))
+            context = inside(one, {key: own[key] for key in own.keys() & INHERITED}, context)
+        return context.style
+
     def outlines(self) -> Iterator[Drawn]:
         """The elements that draw an outline, in the document's order."""
         yield from walk(self, self.root, _root_context(self.root))
@@ -129,23 +170,27 @@ class Document:
 def walk(document: Document, start: ElementTree.Element, outer: Context) -> Iterator[Drawn]:
     """What an element and its children draw, in order."""
     stack = [(start, outer)]
-    count = 0
     while stack:
         element, around = stack.pop()
         tag = tag_of(element)
         referred = bool(around.uses) and around.uses[-1] is element
         if tag is None or (tag in NO_DRAWING and not referred and element is not start):
             continue
-        count += 1
-        if count > _MOST_DRAWN:
-            raise InputError(f"expected at most {_MOST_DRAWN:,} elements drawn, got more")
+        document.count(elements=1)
         with where(element, tag):
-            own = document.styles.of(element)
-            if own.get("display", "").lower() == "none" or share(own.get("opacity", "1")) == 0.0:
+            if not passes(element):
+                document.found.left_out[f"{tag[:40]} for other languages or programs"] += 1
+                continue
+            own = seen(document, document.styles.of(element))
+            unseen = not around.clipping and share(own.get("opacity", "1")) <= 0.0
+            if own.get("display", "").lower() == "none" or unseen:
                 if tag in _GROUPS or tag in OUTLINES:
                     document.found.left_out[f"hidden {tag}"] += 1
                 continue
             context = inside(element, own, around)
+            if tag == "use":  # its place is part of its transform, and moves its clips
+                shift = _place(element, context.view)
+                context = replace(context, matrix=product(context.matrix, shift))
             clips = document.clips_of(document, element, own, context)
             if clips:
                 context = replace(context, clips=context.clips + clips)
@@ -156,16 +201,17 @@ def walk(document: Document, start: ElementTree.Element, outer: Context) -> Iter
             elif tag not in OUTLINES:
                 document.found.left_out[tag[:40]] += 1
             else:
-                drawn = _drawn(document, element, tag, context)
+                drawn = _drawn(document, as_styled(element, own), tag, context)
                 if drawn is not None:
-                    yield drawn
+                    constant = own.get("vector-effect") == "non-scaling-stroke"
+                    yield replace(drawn, own=None) if constant else drawn
 
 
 def _children(
     document: Document, element: ElementTree.Element, tag: str, context: Context, outer: Context
 ) -> list[tuple[ElementTree.Element, Context]]:
     if tag == "switch":
-        chosen = next((child for child in element if _passes(child)), None)
+        chosen = next((child for child in element if passes(child)), None)
         return [] if chosen is None else [(chosen, context)]
     if tag == "use":
         target = document.target(element)
@@ -175,31 +221,34 @@ def _children(
         if any(target is one for one in context.uses) or target is element:
             document.found.left_out["use of itself"] += 1
             return []
-        shift = Matrix(
-            e=length(element.get("x", "0"), "x", context.view),
-            f=length(element.get("y", "0"), "y", context.view),
-        )
-        moved = replace(
-            context, matrix=product(context.matrix, shift), uses=(*context.uses, target)
-        )
+        moved = replace(context, uses=(*context.uses, target))
         if tag_of(target) in ("symbol", "svg"):
             size = {key: value for key in ("width", "height") if (value := element.get(key))}
-            moved = _in_view(target, moved, size)
-            own = document.styles.of(target)
-            moved = inside(target, own, moved)
+            own = seen(document, document.styles.of(target))
+            if tag_of(target) == "svg":
+                shift = _place(target, moved.view)
+                moved = replace(moved, matrix=product(moved.matrix, shift))
+            else:  # as programs draw it, a symbol has no size of its own
+                size = {"width": "100%", "height": "100%"} | size
+            moved = _in_view(target, own, inside(target, own, moved), size)
             return [(child, moved) for child in target]
         return [(target, moved)]
     if tag == "svg" and element is not document.root:
-        shift = Matrix(
-            e=length(element.get("x", "0"), "x", outer.view),
-            f=length(element.get("y", "0"), "y", outer.view),
-        )
+        shift = _place(element, outer.view)
         context = replace(context, matrix=product(context.matrix, shift))
-        context = _in_view(element, context, {})
+        context = _in_view(element, document.styles.of(element), context, {})
     return [(child, context) for child in element]
 
 
-def _in_view(element: ElementTree.Element, context: Context, size: dict[str, str]) -> Context:
+def _place(element: ElementTree.Element, view: View) -> Matrix:
+    """The shift by ``x`` and ``y``."""
+    x, y = (length(element.get(key, "0"), key, view) for key in "xy")
+    return Matrix(e=x, f=y)
+
+
+def _in_view(
+    element: ElementTree.Element, own: dict[str, str], context: Context, size: dict[str, str]
+) -> Context:
     """The context in the viewport that an ``svg`` or a ``symbol`` opens at the origin."""
     width, height = (
         length(size.get(key, element.get(key, "100%")).replace("auto", "100%"), key, context.view)
@@ -208,7 +257,7 @@ def _in_view(element: ElementTree.Element, context: Context, size: dict[str, str
     box = view_box(element.get("viewBox", ""))
     if width <= 0.0 or height <= 0.0:
         return replace(context, clips=(*context.clips, Clip([])))
-    overflow = element.get("overflow", "hidden")
+    overflow = own.get("overflow", "hidden")
     clips = context.clips
     if overflow not in ("visible", "auto"):
         clips = (*clips, window(context.matrix, width, height))
@@ -221,8 +270,8 @@ def _in_view(element: ElementTree.Element, context: Context, size: dict[str, str
     return replace(context, matrix=matrix, view=view, clips=clips)
 
 
-def _passes(element: ElementTree.Element) -> bool:
-    """Whether a child of ``switch`` may be chosen: in English, and with no extensions."""
+def passes(element: ElementTree.Element) -> bool:
+    """Whether an element may be drawn: in English, and with no extensions."""
     if tag_of(element) is None:
         return False
     languages = element.get("systemLanguage")
@@ -230,7 +279,7 @@ def _passes(element: ElementTree.Element) -> bool:
         known = [word.strip().lower() for word in languages.split(",")]
         if not any(word == "en" or word.startswith("en-") for word in known):
             return False
-    return not element.get("requiredExtensions", "").strip()
+    return element.get("requiredExtensions") is None
 
 
 def _root_context(root: ElementTree.Element) -> Context:
@@ -286,16 +335,23 @@ def _drawn(
     found, label = document.found, label_of(element, tag)
     try:
         shape = outline(element, tag, context.view)
+        loops = _mapped(shape, context.matrix)
+        if context.filled:
+            _check_not_lost(shape.loops, loops)
+    except TooMuch:
+        raise
     except InputError as error:
         found.mended.append(f"left out, as it has an error: {label}: {error}")
         return None
+    if any(context.style.get(f"marker{end}", "none") != "none" for end in _MARKERS):
+        found.left_out["markers of " + tag] += 1
     if shape.error:
         found.mended.append(f"drawn up to an error: {label}: {shape.error}")
-    loops = _mapped(shape, context.matrix)
     if not loops:
         if not shape.error:
             found.left_out[f"{tag} without area"] += 1
         return None
+    document.count(pieces=sum(map(len, loops)), cuts=len(context.clips))
     return Drawn(tag, loops, context, label, shape.loops)
 
 
@@ -307,6 +363,17 @@ def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:
     if not all(np.isfinite(piece).all() for loop in loops for piece in loop):
         raise InputError("expected finite coordinates, got NaN or infinity")
     return loops
+
+
+def _check_not_lost(before: Loops, after: Loops) -> None:
+    """Refuse what has a size and is next to nothing beside its coordinates, or becomes so."""
+    if not before or not after:
+        return
+    given, points = (
+        np.concatenate([p for loop in loops for p in loop]) for loops in (before, after)
+    )
+    if np.ptp(given, axis=0).any():
+        check_place(float(np.ptp(points, axis=0).max()), float(np.abs(points).max()))
 
 
 @contextmanager

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from splinesdf.arclets.interpolation import DEGREE, NODES, SAMPLES, TO_CHECKS, TO_CONTROL
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import NOTHING, Bools, Floats, as_points, largest_coordinate
+from splinesdf.shapes.loops import check_count
 
 # Agreement asked for, in units in the last place of the largest coordinate. Smaller: rounding in
 # the formula itself is chased in vain. Larger: error that the exact distance would inherit.
@@ -270,6 +271,7 @@ def polygon(points: ArrayLike) -> list[Floats]:
         If fewer than 3 distinct points are left or a coordinate is not finite.
     """
     corners = _distinct(points)
+    check_count(len(corners))
     following = np.roll(corners, -1, axis=0)
     return list(np.stack([corners, following], axis=1))
 

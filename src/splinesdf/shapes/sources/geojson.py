@@ -11,6 +11,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.shapes.loops import check_count
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.sources.compiled import polygon
 
@@ -28,6 +29,7 @@ class Polygons(NamedTuple):
     rings: list[list[Floats]]  # of each polygon, its outline first
     left_out: Counter[str]
     has_z: list[bool]  # one True as soon as a point has more than two numbers
+    corners: list[int]  # how many those of the first, the first two, ... have; 0 before
 
     def notes(self) -> tuple[str, ...]:
         """One line for each kind of thing that a shape cannot hold."""
@@ -57,9 +59,14 @@ class Polygons(NamedTuple):
         return [loop for part in parts for loop in region(part, rule)], "nonzero"
 
 
+def nothing_found() -> Polygons:
+    """No polygons yet."""
+    return Polygons([], Counter(), [], [0])
+
+
 def polygons_of(value: Any) -> Polygons:
     """The polygons of a GeoJSON object, or of an object with a ``__geo_interface__``."""
-    found = Polygons([], Counter(), [])
+    found = nothing_found()
     _collect(getattr(value, "__geo_interface__", value), found, 0)
     return found
 
@@ -103,6 +110,8 @@ def add_polygon(rings: Any, found: Polygons) -> None:
     corners = [_ring(ring, found) for ring in rings]
     if corners:
         found.rings.append(corners)
+        found.corners.append(found.corners[-1] + sum(map(len, corners)))
+        check_count(found.corners[-1])
 
 
 def _ring(ring: Any, found: Polygons) -> Floats:

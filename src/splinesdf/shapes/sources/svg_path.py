@@ -17,6 +17,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.shapes.loops import TooMuch, check_count
 from splinesdf.shapes.sources.compiled import compile_arc
 
 # What follows each command: n a number, f a flag (one digit, which needs no separator).
@@ -83,6 +84,8 @@ def parse_until(d: str) -> tuple[list[list[Floats]], InputError | None]:
     error = None
     try:
         _draw(d, subpaths)
+    except TooMuch:
+        raise
     except InputError as first:
         error = first
     return [pieces for pieces in subpaths if pieces], error
@@ -92,7 +95,8 @@ def _draw(d: str, subpaths: list[list[Floats]]) -> None:
     """Draw path data into subpaths, the last one of which is being drawn."""
     here = start = handle = 0j
     previous = ""
-    for letter, values, at in _commands(d):
+    for number, (letter, values, at) in enumerate(_commands(d)):
+        check_count(number)
         command = letter.upper()
         if not previous and command != "M":
             raise _error(d, at, "M to begin with")

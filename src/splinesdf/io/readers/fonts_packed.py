@@ -1,0 +1,69 @@
+"""How large packed fonts are: a small file may unpack to more than the memory."""
+
+from __future__ import annotations
+
+import io
+import zlib
+from typing import Any
+
+from splinesdf.errors import InputError
+
+# Bytes that a packed font may unpack to. Fonts of all of Chinese have 30 MB. More: memory; fewer:
+# large collections must be unpacked first.
+_MOST_UNPACKED = 200_000_000
+# The lengths of the headers of both formats.
+_WOFF, _WOFF2 = 44, 48
+
+
+def check_unpacked(content: bytes) -> None:
+    """Refuse a packed font that would unpack to too much; its reader has no limit of its own.
+
+    Parameters
+    ----------
+    content : bytes
+        A file. Of one that is not packed, or is cut short, nothing is said here.
+    """
+    count = int.from_bytes(content[12:14], "big")
+    if content[:4] == b"wOFF":
+        size = 0
+        for start in range(_WOFF, min(_WOFF + 20 * count, len(content) - 20), 20):
+            at, packed = (int.from_bytes(content[start + k : start + k + 4], "big") for k in (4, 8))
+            try:
+                unpack = zlib.decompressobj()
+                size += len(unpack.decompress(content[at : at + packed], _MOST_UNPACKED + 1))
+            except zlib.error:
+                continue  # not packed, or damaged
+            _check(size)
+    elif content[:4] == b"wOF2":
+        from fontTools.ttLib.woff2 import WOFF2DirectoryEntry
+
+        rest = io.BytesIO(content)
+        rest.seek(_WOFF2)
+        for _ in range(count):
+            WOFF2DirectoryEntry().fromFile(rest)
+        start, packed = rest.tell(), int.from_bytes(content[20:24], "big")
+        _check(_brotli_size(content[start : start + packed]))
+
+
+def _brotli_size(packed: bytes) -> int:
+    import brotli
+
+    unpack: Any = brotli.Decompressor()
+    size, given = 0, packed
+    try:
+        while size <= _MOST_UNPACKED:
+            part = len(unpack.process(given, output_buffer_limit=1 << 20))
+            size, given = size + part, b""
+            if unpack.is_finished() or not part:
+                break
+    except (TypeError, brotli.error):  # an old one without a limit; damaged data
+        return size
+    return size
+
+
+def _check(size: int) -> None:
+    if size > _MOST_UNPACKED:
+        raise InputError(
+            f"expected a packed font of up to {_MOST_UNPACKED:,} bytes, got a larger one: unpack "
+            "it, if it is meant to be that large"
+        )
