@@ -68,6 +68,7 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
             pair=np.empty((capacity, 2), dtype=np.int64),
             at=np.empty((capacity, 2)),
             found=np.zeros(2, dtype=np.int64),
+            most=np.array(_MOST, dtype=np.int64),
         )
         intersections.fill_crossings(
             arclets.boxes,
@@ -76,7 +77,6 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
             arclets.arcs,
             cone,
             tolerance,
-            np.array(_MOST, dtype=np.int64),
             interpolation,
             met,
         )

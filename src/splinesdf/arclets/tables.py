@@ -93,6 +93,7 @@ class Met(NamedTuple):
     # (2,) how many there are, of which those beyond the capacity were not stored; 1 if it was given
     # up, as there are more, or more arclets beside one another, than were to be looked at
     found: Ints
+    most: Ints  # (2,) places to find, and pairs of arclets to look at, before it is given up
 
 
 class Cells(NamedTuple):

@@ -43,7 +43,6 @@ def fill_crossings(
     arcs: Floats,
     cone: Floats,
     tolerance: float,
-    most: Ints,
     interpolation: Interpolation,
     met: Met,
 ) -> None:
@@ -57,8 +56,6 @@ def fill_crossings(
         Middle and half width of the directions of each arclet, as angles.
     tolerance : float
         Nearer than this counts as touching.
-    most : ndarray, shape (2,)
-        How many places to find, and pairs of arclets to look at, before it is given up.
     interpolation : Interpolation
     met : Met
         Filled.
@@ -77,7 +74,7 @@ def fill_crossings(
         if count_one == 1 and count_other == 1:
             if one != other:
                 looked += 1
-                if met.found[0] > most[0] or looked > most[1]:
+                if met.found[0] > met.most[0] or looked > met.most[1]:
                     met.found[1] = 1
                     return
                 i, j = ranges[one, 0], ranges[other, 0]
