@@ -45,7 +45,9 @@ _READING: tuple[Callable[[Command], Command], ...] = (
         multiple=True,
         help="SVG: read without clips, masks or dashes; again.",
     ),
-    click.option("--layer", "layers", multiple=True, help="DXF: this layer; may be given again."),
+    click.option("--layer", "layers", multiple=True, help="DXF, SVG: this layer only; again."),
+    click.option("--id", "ids", multiple=True, help="SVG: what has this id, or is in it; again."),
+    click.option("--stroke-color", help="SVG: what is stroked in this color, as red or #f00."),
     click.option("--gap", type=float, help="DXF: join ends so far apart.  [1e-6 of the size]"),
     click.option("--text", help="Fonts: what to read."),
     click.option("--size", type=float, help="Fonts: height of an em.  [default: the font's units]"),
@@ -58,6 +60,8 @@ _NAMES = (
     "stroke",
     "ignore",
     "layers",
+    "ids",
+    "stroke_color",
     "gap",
     "columns",
     "text",
@@ -71,7 +75,8 @@ def reading_options(command: Command) -> Command:
 
     def read_as(**given: Any) -> None:
         reading = {name: given.pop(name) for name in _NAMES}
-        reading["layers"] = reading["layers"] or None
+        for name in ("layers", "ids"):
+            reading[name] = reading[name] or None
         if reading["columns"]:
             columns = reading["columns"]
             reading["columns"] = tuple(int(one) if one.isdigit() else one for one in columns)

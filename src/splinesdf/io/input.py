@@ -13,9 +13,15 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.paths import as_path, shortened
-from splinesdf.io.readers import READERS
+from splinesdf.io.readers import READERS, USED
 from splinesdf.io.readers.points import read_blocks
-from splinesdf.io.readers.source import ReadOptions, Source, checked_options, read_options
+from splinesdf.io.readers.source import (
+    ReadOptions,
+    Source,
+    check_used,
+    checked_options,
+    read_options,
+)
 from splinesdf.shapes.shape import Shape
 
 # Bytes of a file. More: minutes and gigabytes before the first distance; fewer: maps of whole
@@ -53,7 +59,12 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     ignore : {"clip-path", "mask", "dashes"} or several
         Read a drawing as if it had none of these, which otherwise cut it, or are refused.
     layers : str or several, optional
-        Of a DXF file these only; all that are not hidden unless given.
+        Of a DXF file, or of a drawing's groups by their layer's label or id, these only; all that
+        are not hidden unless given.
+    ids : str or several, optional
+        Of a drawing what has one of these ids, or is in a group that has.
+    stroke_color : str, optional
+        Of a drawing what is stroked in this color, as CSS writes it.
     gap : float, optional
         Of a DXF file: how far apart ends of edges may be that are joined, 1e-6 of the size of the
         drawing unless given.
@@ -89,6 +100,7 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
             raise InputError(
                 f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
             )
+        check_used(asked, USED, suffix)
         return READERS[suffix](Source(file, _content(file), file.stem, suffix), asked)
 
 

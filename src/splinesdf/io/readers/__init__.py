@@ -16,6 +16,18 @@ from splinesdf.shapes.shape import Shape
 
 Reader = Callable[[Source, Options], Shape]
 
+# Options that some have a use for; `fill` and `close` all have.
+USED: dict[str, tuple[str, ...]] = {
+    ".csv": ("columns",),
+    ".dat": ("columns",),
+    ".dxf": ("ignore", "layers", "gap"),
+    ".geojson": (),
+    ".json": (),
+    ".wkt": (),
+    **dict.fromkeys((".svg", ".svgz"), ("stroke", "ignore", "layers", "ids", "stroke_color")),
+    **dict.fromkeys((".otf", ".ttc", ".ttf", ".woff", ".woff2"), ("text", "size", "location")),
+}
+
 READERS: dict[str, Reader] = {
     ".csv": points_shape,
     ".dat": airfoil_shape,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, TypedDict
 
@@ -11,6 +11,8 @@ from splinesdf.ground.arrays import finite, positive
 from splinesdf.ground.options import check_known, with_options
 
 STROKES = ("none", "outline", "centre")
+# Options that all readers have a use for.
+_ALL_USE = ("fill", "close")
 IGNORED = ("clip-path", "mask", "dashes")
 
 
@@ -53,6 +55,8 @@ class Options(NamedTuple):
     stroke: str | None = None
     ignore: frozenset[str] = frozenset()
     layers: tuple[str, ...] | None = None
+    ids: tuple[str, ...] | None = None
+    stroke_color: str | None = None
     gap: float | None = None
     columns: tuple[str | int, str | int] | None = None
     text: str | None = None
@@ -68,6 +72,8 @@ class ReadOptions(TypedDict, total=False):
     stroke: str | None
     ignore: str | Sequence[str]
     layers: str | Sequence[str] | None
+    ids: str | Sequence[str] | None
+    stroke_color: str | None
     gap: float | None
     columns: Sequence[str | int] | None
     text: str | None
@@ -81,6 +87,8 @@ DEFAULTS: ReadOptions = {
     "stroke": None,
     "ignore": (),
     "layers": None,
+    "ids": None,
+    "stroke_color": None,
     "gap": None,
     "columns": None,
     "text": None,
@@ -103,7 +111,7 @@ def checked_options(given: ReadOptions) -> Options:
     for name in ignored:
         if name not in IGNORED:
             raise InputError(f"expected to ignore {' or '.join(IGNORED)}, got {name!r:.60}")
-    layers = given.get("layers")
+    layers, ids = given.get("layers"), given.get("ids")
     columns = given.get("columns")
     if columns is not None:
         chosen = tuple(columns)
@@ -117,17 +125,39 @@ def checked_options(given: ReadOptions) -> Options:
         stroke,
         frozenset(ignored),
         None if layers is None else _names(layers, "layers"),
+        None if ids is None else _names(ids, "ids"),
+        _text(given.get("stroke_color"), "stroke_color"),
         None if gap is None else positive(gap, "gap"),
         None if columns is None else (columns[0], columns[1]),
-        _text(given.get("text")),
+        _text(given.get("text"), "text"),
         None if size is None else positive(size, "size"),
         _location(given.get("location")),
     )
 
 
-def _text(value: str | None) -> str | None:
+def check_used(options: Options, used: Mapping[str, Collection[str]], suffix: str) -> None:
+    """Refuse options that a format has no use for.
+
+    Parameters
+    ----------
+    options : Options
+    used : mapping of str to collection of str
+        By suffix, which options its reader has a use for beside those that all have.
+    suffix : str
+        The file's.
+    """
+    defaults = Options()
+    for name in options._fields:
+        if name in _ALL_USE or name in used[suffix]:
+            continue
+        if getattr(options, name) != getattr(defaults, name):
+            where = ", ".join(sorted(one for one in used if name in used[one]))
+            raise InputError(f"expected {name} only for {where}, got it for {suffix}: leave it out")
+
+
+def _text(value: str | None, what: str) -> str | None:
     if value is not None and not isinstance(value, str):
-        raise InputError(f"expected text as a text, got {value!r:.60}")
+        raise InputError(f"expected {what} as a text, got {value!r:.60}")
     return value
 
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from splinesdf.errors import InputError
 from splinesdf.io.readers.source import Options, Source
+from splinesdf.io.readers.svg_chosen import chosen
 from splinesdf.io.readers.svg_document import parse_document
 from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_regions import clips_of, filled, is_flat
@@ -51,7 +52,7 @@ def svg_shape(source: Source, options: Options) -> Shape:
     """The shape that the document's elements fill; of lines if that is asked for."""
     root = parse_document(source.content)
     document = Document(root, options.ignore, clips_of)
-    elements = list(document.outlines())
+    elements = chosen(list(document.outlines()), document, options)
     if document.styles.unread:
         document.found.left_out["style that is no CSS"] += document.styles.unread
     # A file may say itself that its strokes are closed lines, as those of `write` do.

@@ -34,6 +34,8 @@ NO_DRAWING = frozenset(
     ("clipPath", "defs", "desc", "filter", "linearGradient", "marker", "mask", "metadata",
      "pattern", "radialGradient", "script", "style", "symbol", "title", "view")
 )  # fmt: skip
+# What Inkscape calls a layer, as its users do.
+_LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 # Elements that are drawn, those that are referred to as often as they are. More: a few lines of
 # ``use`` in ``use`` take all time and memory; fewer: large drawings are refused.
 _MOST_DRAWN = 1_000_000
@@ -53,6 +55,9 @@ class Context:
     clips: tuple[Clip, ...] = ()
     # The elements that are referred to around this one: none may refer to itself.
     uses: tuple[ElementTree.Element, ...] = ()
+    # Of the element and those around it: ids, and what groups are called as layers.
+    ids: tuple[str, ...] = ()
+    layers: tuple[str, ...] = ()
     clipping: bool = False  # whether it is a clip that is drawn, where opacity says nothing
 
     def paint(self, key: str, default: str) -> str:
@@ -315,7 +320,12 @@ def inside(element: ElementTree.Element, own: dict[str, str], outer: Context) ->
             x, y = _origin(origin, view)
             step = product(product(Matrix(e=x, f=y), step), Matrix(e=-x, f=-y))
         matrix = product(matrix, step)
-    return replace(outer, matrix=matrix, style=style, view=view)
+    ids, layers = outer.ids, outer.layers
+    if name := element.get("id", ""):
+        ids = (*ids, name)
+    if tag_of(element) == "g" and (name := element.get(_LABEL, name)):
+        layers = (*layers, name)
+    return replace(outer, matrix=matrix, style=style, view=view, ids=ids, layers=layers)
 
 
 def _origin(text: str, view: View) -> tuple[float, float]:
