@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import splinesdf as ss
 from splinesdf.arclets.points import bezier_points
 from splinesdf.shapes.sources.stroke import Pen, stroke_region
-from splinesdf.shapes.sources.svg_path import parse_path
+from splinesdf.shapes.sources.svg_path import parse_path, parse_until
 from tests.drawings import judged
 from tests.shapes.test_boundary import area, loops
 
@@ -36,7 +36,8 @@ CURVES = {
 
 
 def stroked(path: str, pen: Pen) -> ss.Shape:
-    return ss.Shape.from_pieces(stroke_region(parse_path(path), pen), once=False)
+    found = parse_until(path)
+    return ss.Shape.from_pieces(stroke_region(found.loops, found.closed, pen), once=False)
 
 
 def line(points: list[tuple[float, float]]) -> str:
@@ -126,7 +127,20 @@ def test_a_miter_beyond_its_limit_is_a_bevel() -> None:
 def test_a_point_with_caps_is_a_dot() -> None:
     assert math.isclose(area(stroked("M3 4h0", Pen(2.0, "round")).boundary), math.pi, rel_tol=1e-9)
     assert math.isclose(area(stroked("M3 4h0", Pen(2.0, "square")).boundary), 4.0, rel_tol=1e-12)
-    assert stroke_region(parse_path("M3 4h0"), Pen(2.0)) == []
+    assert stroke_region(parse_path("M3 4h0"), [False], Pen(2.0)) == []
+
+
+@pytest.mark.parametrize("back", ["H0V0", "h-9.7h-.2h-.1v-10"])
+def test_only_a_closed_path_has_a_join_at_its_start(back: str) -> None:
+    """Where it closes, rounding may be between; what ends where it starts may be open."""
+    square = f"M0 0h.1h.2h9.7v10{back}"
+    assert math.isclose(area(stroked(square + "Z", Pen(2.0)).boundary), 80.0, rel_tol=1e-9)
+    assert math.isclose(area(stroked(square, Pen(2.0)).boundary), 79.0, rel_tol=1e-9)
+
+
+def test_a_path_that_turns_back_has_no_miter() -> None:
+    assert stroked("M0 0H10H5", Pen(2.0)).box == (0.0, -1.0, 10.0, 1.0)
+    assert stroked("M0 0H10H5", Pen(2.0, join="round")).box == pytest.approx((0.0, -1.0, 11.0, 1.0))
 
 
 @pytest.fixture
@@ -168,3 +182,8 @@ ICONS = sorted((DATA / "drawings" / "feather").glob("*.svg"))[::3]
 @pytest.mark.parametrize("path", ICONS, ids=lambda path: path.stem)
 def test_icons_of_strokes_are_as_painted(path: Path) -> None:
     assert judged(path, 256, stroke="outline") == ""
+
+
+@pytest.mark.parametrize("name", ["feather/frown", "tabler-outline/laurel-wreath-1"])
+def test_handles_of_no_length_are_followed_to_their_ends(name: str) -> None:
+    assert judged(DATA / "drawings" / f"{name}.svg", 256, stroke="outline") == ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 from xml.etree import ElementTree
 
@@ -27,6 +27,7 @@ class Outline(NamedTuple):
     """An element's subpaths, and what is wrong with the rest of it."""
 
     loops: Loops
+    closed: Sequence[bool]  # of each: where its ends meet a stroke has a join, else caps
     error: str = ""
 
 
@@ -39,7 +40,8 @@ def outline(element: ElementTree.Element, tag: str, view: View) -> Outline:
         If nothing of it may be drawn.
     """
     found = OUTLINES[tag](element, view)
-    return found._replace(loops=[loop for loop in found.loops if loop])
+    kept = [k for k, loop in enumerate(found.loops) if loop]
+    return Outline([found.loops[k] for k in kept], [found.closed[k] for k in kept], found.error)
 
 
 def as_styled(element: ElementTree.Element, own: dict[str, str]) -> ElementTree.Element:
@@ -53,8 +55,8 @@ def as_styled(element: ElementTree.Element, own: dict[str, str]) -> ElementTree.
 
 
 def _path(element: ElementTree.Element, view: View) -> Outline:
-    loops, error = parse_until(element.get("d", ""))
-    return Outline(loops, str(error) if error else "")
+    loops, closed, error = parse_until(element.get("d", ""))
+    return Outline(loops, closed, str(error) if error else "")
 
 
 def _polyline(element: ElementTree.Element, view: View) -> Outline:
@@ -67,7 +69,7 @@ def _polyline(element: ElementTree.Element, view: View) -> Outline:
         error = error or f"expected x and y of every point, got {len(numbers)} numbers"
         numbers = numbers[:-1]
     corners = np.array(numbers, dtype=np.float64).reshape(-1, 2)
-    return Outline([list(np.stack([corners[:-1], corners[1:]], axis=1))], error)
+    return Outline([list(np.stack([corners[:-1], corners[1:]], axis=1))], [False], error)
 
 
 def _numbers_before(text: str) -> list[float]:
@@ -84,8 +86,8 @@ def _numbers_before(text: str) -> list[float]:
 
 
 def _polygon(element: ElementTree.Element, view: View) -> Outline:
-    loops, error = _polyline(element, view)
-    return Outline([loop + closing_piece(loop) for loop in loops], error)
+    loops, _, error = _polyline(element, view)
+    return Outline([loop + closing_piece(loop) for loop in loops], [True], error)
 
 
 def _line(element: ElementTree.Element, view: View) -> Outline:
@@ -95,7 +97,7 @@ def _line(element: ElementTree.Element, view: View) -> Outline:
             for x, y in (("x1", "y1"), ("x2", "y2"))
         ]
     )
-    return Outline([[ends]])
+    return Outline([[ends]], [False])
 
 
 def _circle(element: ElementTree.Element, view: View) -> Outline:
@@ -110,10 +112,10 @@ def _ellipse(element: ElementTree.Element, view: View) -> Outline:
 
 def _whole_ellipse(element: ElementTree.Element, rx: float, ry: float, view: View) -> Outline:
     if not rx or not ry:
-        return Outline([])
+        return Outline([], [])
     center = _length(element, "cx", view), _length(element, "cy", view)
     check_place(2.0 * max(rx, ry), max(map(abs, center)))
-    return Outline([compile_arc(center, (rx, 0.0), (0.0, ry), 0.0, 2.0 * math.pi)])
+    return Outline([compile_arc(center, (rx, 0.0), (0.0, ry), 0.0, 2.0 * math.pi)], [True])
 
 
 def _rect(element: ElementTree.Element, view: View) -> Outline:
@@ -121,11 +123,11 @@ def _rect(element: ElementTree.Element, view: View) -> Outline:
     x, y = _length(element, "x", view), _length(element, "y", view)
     width, height = _size(element, "width", view), _size(element, "height", view)
     if not width or not height:
-        return Outline([])
+        return Outline([], [])
     check_place(max(width, height), max(abs(x), abs(y)))
     rx, ry = _radii(element, view)
     rx, ry = min(rx, 0.5 * width), min(ry, 0.5 * height)
-    return Outline(rectangle(x, y, width, height, rx, ry))
+    return Outline(rectangle(x, y, width, height, rx, ry), [True])
 
 
 def rectangle(

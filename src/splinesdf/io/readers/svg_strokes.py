@@ -46,7 +46,7 @@ def stroked(drawn: Drawn, ignore: frozenset[str]) -> Loops:
         max(limit, 1.0),
     )
     try:
-        loops = stroke_region(drawn.loops if drawn.own is None else drawn.own, pen)
+        loops = stroke_region(drawn.loops if drawn.own is None else drawn.own, drawn.closed, pen)
     except InputError as error:
         raise InputError(
             f"{drawn.label}: expected a line whose stroke has a border that curves follow: {error}"

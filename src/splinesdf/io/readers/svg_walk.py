@@ -10,7 +10,7 @@ The stack is explicit because documents may be nested deeper than Python's calls
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from xml.etree import ElementTree
@@ -102,6 +102,7 @@ class Drawn:
     # The same in the element's own coordinates, in which it is stroked: none if the transform does
     # not stretch its stroke.
     own: list[list[Floats]] | None
+    closed: Sequence[bool]
 
 
 @dataclass(frozen=True)
@@ -362,7 +363,7 @@ def _drawn(
             found.left_out[f"{tag} without area"] += 1
         return None
     document.count(pieces=sum(map(len, loops)), cuts=len(context.clips))
-    return Drawn(tag, loops, context, label, shape.loops)
+    return Drawn(tag, loops, context, label, shape.loops, shape.closed)
 
 
 def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:

@@ -67,34 +67,38 @@ class _Beside:
         normal = np.stack([-first[:, 1], first[:, 0]], axis=1) / speed[:, None]
         if self.offset is not None:
             return np.asarray(points + self.offset * normal)
-        bend = (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / speed**3
+        bend = _cross(self.control, t, first, second) / speed**3
         # Where handles have no length the curve bends without bound, about itself.
         bent = (bend != 0.0) & ~_still(self.control, t)
         radius = np.where(bent, 1.0 / np.where(bent, bend, 1.0), 0.0)
         return np.asarray(points + radius[:, None] * normal)
 
 
-def stroke_region(loops: Sequence[Sequence[Floats]], pen: Pen) -> Loops:
+def stroke_region(loops: Sequence[Sequence[Floats]], closed: Sequence[bool], pen: Pen) -> Loops:
     """Loops around what a stroke along paths covers, inside on the left; they may overlap.
 
     Parameters
     ----------
     loops : sequence of sequences of ndarray, shape (degree + 1, 2)
-        The control points of each piece of each path. One that ends where it starts is closed.
+        The control points of each piece of each path.
+    closed : sequence of bool
+        Of each path whether its end and its start are joined; they are the same but for rounding.
+        Otherwise it has caps there, even if they are the same.
     pen : Pen
     """
     result: Loops = []
-    for loop in loops:
-        pieces = [piece for path in loop for piece in _regular(path)]
+    for loop, is_closed in zip(loops, closed, strict=True):
+        pieces = [piece for piece in loop if np.any(piece != piece[0])]
         if pieces:
-            result += _stroked(pieces, pen)
+            result += _stroked(pieces, is_closed, pen)
         elif len(loop) and pen.cap != "butt":
             result += _dot(loop[0][0], pen)
     return result
 
 
-def _stroked(pieces: list[Floats], pen: Pen) -> Loops:
-    closed = np.array_equal(pieces[0][0], pieces[-1][-1])
+def _stroked(pieces: list[Floats], closed: bool, pen: Pen) -> Loops:
+    if closed:
+        pieces = [*pieces[:-1], np.concatenate([pieces[-1][:-1], pieces[0][:1]])]
     half = 0.5 * pen.width
     ends = [(_tangent(piece, 0), _tangent(piece, 1)) for piece in pieces]
     result: Loops = []
@@ -169,8 +173,9 @@ def _stretches(piece: Floats, half: float) -> list[_Stretch]:
 
 def _bend(piece: Floats, t: float) -> tuple[float, float]:
     """The cross product of the first two derivatives, and the speed."""
-    _, first, second = _derivatives(piece, np.array([t]))
-    bend = float(first[0, 0] * second[0, 1] - first[0, 1] * second[0, 0])
+    at = np.array([t])
+    _, first, second = _derivatives(piece, at)
+    bend = float(_cross(piece, at, first, second)[0])
     return bend, float(np.hypot(*first[0]))
 
 
@@ -193,8 +198,7 @@ def _is_round(piece: Floats, half: float) -> bool:
     if _still(piece, t).any():
         return False
     _, first, second = _derivatives(piece, t)
-    bend = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    share = np.abs(bend) * half / np.hypot(first[:, 0], first[:, 1]) ** 3
+    share = np.abs(_cross(piece, t, first, second)) * half / np.hypot(first[:, 0], first[:, 1]) ** 3
     return bool(np.all(np.abs(share - 1.0) <= _ROUND))
 
 
@@ -244,24 +248,31 @@ def _beside(piece: Floats, low: float, high: float, offset: float | None) -> lis
     return compile_curve(curve)
 
 
-def _regular(piece: Floats) -> list[Floats]:
-    """The piece without repeated end points, so that it has a direction there; none if a point."""
-    if np.all(piece == piece[0]):
-        return []
-    return [piece]
-
-
 def _derivatives(control: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
-    points, first = bezier_points(control, t)
+    points, _ = bezier_points(control, t)
+    # From differences: next to an end with a short handle they are small, and known all the same.
     slopes = (len(control) - 1) * np.diff(control, axis=0)
+    first, second = bezier_points(slopes, t)
     if len(slopes) < 2:
         return points, first, np.zeros_like(first)
     # Where handles have no length the direction is that of the next difference.
-    _, second = bezier_points(slopes, t)
     still = _still(control, t)
     if still.any():
         first = np.where(still[:, None], np.where(t[:, None] < 0.5, second, -second), first)
     return points, first, second
+
+
+def _cross(control: Floats, t: Floats, first: Floats, second: Floats) -> Floats:
+    """The cross product of the first two derivatives.
+
+    Of a cubic from its hodograph's control points, as next to an end with a short handle both
+    derivatives have nearly the same direction.
+    """
+    if len(control) != 4:
+        return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    a, b, c = 3.0 * np.diff(control, axis=0)
+    ab, ac, bc = (one[0] * two[1] - one[1] * two[0] for one, two in ((a, b), (a, c), (b, c)))
+    return np.asarray(2.0 * (ab * (1.0 - t) ** 2 + ac * t * (1.0 - t) + bc * t * t))
 
 
 def _still(control: Floats, t: Floats) -> Bools:

@@ -12,6 +12,7 @@ import cmath
 import math
 import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -72,27 +73,38 @@ def parse_path(d: str) -> list[list[Floats]]:
     InputError
         With the place of the first character that does not fit.
     """
-    subpaths, error = parse_until(d)
-    if error is not None:
-        raise error
-    return subpaths
+    found = parse_until(d)
+    if found.error is not None:
+        raise found.error
+    return found.loops
 
 
-def parse_until(d: str) -> tuple[list[list[Floats]], InputError | None]:
+class Subpaths(NamedTuple):
+    """What path data draws."""
+
+    loops: list[list[Floats]]
+    closed: list[bool]  # of each whether Z ends it; one that ends where it starts is not
+    error: InputError | None
+
+
+def parse_until(d: str) -> Subpaths:
     """The subpaths up to the first error in path data, as SVG draws them, and the error."""
     subpaths: list[list[Floats]] = [[]]
+    closed: set[int] = set()
     error = None
     try:
-        _draw(d, subpaths)
+        _draw(d, subpaths, closed)
     except TooMuch:
         raise
     except InputError as first:
         error = first
-    return [pieces for pieces in subpaths if pieces], error
+    drawn = [number for number, pieces in enumerate(subpaths) if pieces]
+    loops = [subpaths[number] for number in drawn]
+    return Subpaths(loops, [number in closed for number in drawn], error)
 
 
-def _draw(d: str, subpaths: list[list[Floats]]) -> None:
-    """Draw path data into subpaths, the last one of which is being drawn."""
+def _draw(d: str, subpaths: list[list[Floats]], closed: set[int]) -> None:
+    """Draw path data into subpaths, the last one of which is being drawn; which ones Z ends."""
     here = start = handle = 0j
     previous = ""
     for number, (letter, values, at) in enumerate(_commands(d)):
@@ -106,6 +118,7 @@ def _draw(d: str, subpaths: list[list[Floats]]) -> None:
             subpaths.append([])
         elif command == "Z":
             subpaths[-1] += closing_piece(subpaths[-1])
+            closed.add(len(subpaths) - 1)
             here = start
             subpaths.append([])
         elif command == "A":
