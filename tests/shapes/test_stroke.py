@@ -118,6 +118,16 @@ def test_a_circle_is_a_ring_or_a_disk(radius: float, filled: float) -> None:
     assert len(loops(shape.boundary)) == (2 if radius > 1.0 else 1)
 
 
+@pytest.mark.parametrize(("scale", "shift"), [(1.0, 1e6), (1e-6, 1.0), (1e6, 0.0)])
+def test_a_disk_far_away_or_small_is_one(scale: float, shift: float) -> None:
+    found = parse_until("M2 0A2 2 0 0 1 -2 0A2 2 0 0 1 2 0Z")
+    moved = [[scale * piece + shift for piece in loop] for loop in found.loops]
+    shape = ss.Shape.from_pieces(stroke_region(moved, found.closed, Pen(4.0 * scale)), once=False)
+    assert len(loops(shape.boundary)) == 1
+    distance = ss.signed_distance(shape, scale * np.array([[0.0, 0.0], [3.9, 0.0]]) + shift)
+    np.testing.assert_allclose(distance / scale, [-4.0, -0.1], atol=1e-8)
+
+
 def test_a_miter_beyond_its_limit_is_a_bevel() -> None:
     sharp = line([(0.0, 0.0), (10.0, 0.0), (0.0, 1.0)])
     assert stroked(sharp, Pen(1.0, miter_limit=30.0)).box[2] > 12.0

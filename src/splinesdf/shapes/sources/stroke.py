@@ -34,6 +34,10 @@ _REAL = 1e-6
 # a circle is as wide as the stroke, rounding cuts it into hundreds of stretches; larger: what is
 # open in the middle is closed.
 _ROUND = 1e-7
+# Of the largest coordinate: how far rounding moves second derivatives of pieces of degree 7; and
+# how much of it is let pass. Smaller: far from the origin a circle as wide as the stroke is cut
+# into slices; larger: as for _ROUND.
+_ROUNDED, _MOST_ROUNDED = 2e-13, 1e-5
 # A piece stands still where its speed is less than this share of its largest one.
 _STILL = 1e-12
 # Next to an end with a short handle a parallel is no better known than its direction: it is
@@ -199,7 +203,10 @@ def _is_round(piece: Floats, half: float) -> bool:
         return False
     _, first, second = _derivatives(piece, t)
     share = np.abs(_cross(piece, t, first, second)) * half / np.hypot(first[:, 0], first[:, 1]) ** 3
-    return bool(np.all(np.abs(share - 1.0) <= _ROUND))
+    # What rounding of the coordinates does to the second derivative, beside that of the piece.
+    length = float(np.ptp(piece, axis=0).max())
+    rounding = _ROUNDED * float(np.abs(piece).max()) * half / length**2
+    return bool(np.all(np.abs(share - 1.0) <= _ROUND + min(rounding, _MOST_ROUNDED)))
 
 
 def _sector(run: list[_Stretch], outer: float) -> Loops:
@@ -351,10 +358,6 @@ def _dot(at: Floats, pen: Pen) -> Loops:
     half = 0.5 * pen.width
     if pen.cap == "round":
         return _disk(at, half)
-    return _polygon_region(at, half)
-
-
-def _polygon_region(at: Floats, half: float) -> Loops:
     corners = [at + half * np.array(corner) for corner in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     return region([_polygon(corners)], "nonzero")
 
