@@ -22,9 +22,9 @@ from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
 from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.joining import are_open, joined
 from splinesdf.shapes.loops import check_count, extent
+from splinesdf.shapes.region import Loops
 from splinesdf.shapes.shape import Shape
 
-Loops = list[list[Floats]]
 # Millimeters of $INSUNITS, by its numbers.
 _UNITS = {
     1: 25.4, 2: 304.8, 3: 1609344.0, 4: 1.0, 5: 10.0, 6: 1000.0, 7: 1e6, 8: 25.4e-6, 9: 25.4e-3,

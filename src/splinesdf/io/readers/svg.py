@@ -16,12 +16,13 @@ from typing import NamedTuple
 from splinesdf.errors import InputError
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.io.readers.svg_chosen import chosen
+from splinesdf.io.readers.svg_context import Drawn
 from splinesdf.io.readers.svg_document import parse_document
 from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_regions import clips_of, filled, is_flat
 from splinesdf.io.readers.svg_strokes import stroked
 from splinesdf.io.readers.svg_units import unit_length, unit_note
-from splinesdf.io.readers.svg_walk import Document, Drawn, Found
+from splinesdf.io.readers.svg_walk import Document, Found
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.repeats import drawn_once, first_of_each, repeats_note
 from splinesdf.shapes.shape import Shape

@@ -7,7 +7,8 @@ from typing import Any
 
 from splinesdf.errors import InputError
 from splinesdf.io.readers.source import Options
-from splinesdf.io.readers.svg_walk import Document, Drawn
+from splinesdf.io.readers.svg_context import Drawn
+from splinesdf.io.readers.svg_walk import Document
 
 
 def chosen(elements: Sequence[Drawn], document: Document, options: Options) -> list[Drawn]:

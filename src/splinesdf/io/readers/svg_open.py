@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from splinesdf.ground.arrays import Floats
 from splinesdf.shapes.joining import are_open, joined
-
-Loops = list[list[Floats]]
+from splinesdf.shapes.region import Loops
 
 
 def without_open(elements: Sequence[tuple[str, Loops]]) -> tuple[list[Loops], str | None]:

@@ -11,14 +11,12 @@ from xml.etree import ElementTree
 import numpy as np
 
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_lengths import View, length
 from splinesdf.io.readers.svg_style import GEOMETRY
 from splinesdf.shapes.loops import check_place
+from splinesdf.shapes.region import Loops
 from splinesdf.shapes.sources.compiled import compile_arc
 from splinesdf.shapes.sources.svg_path import closing_piece, parse_numbers, parse_path, parse_until
-
-Loops = list[list[Floats]]
 
 _CSS_PATH = re.compile(r"""path\(\s*(["'])(.*)\1\s*\)""", re.DOTALL)
 

@@ -11,11 +11,12 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_clip import Clip
+from splinesdf.io.readers.svg_context import Context, Drawn
 from splinesdf.io.readers.svg_document import tag_of
 from splinesdf.io.readers.svg_lengths import length
 from splinesdf.io.readers.svg_outlines import OUTLINES, outline, rectangle
 from splinesdf.io.readers.svg_transform import Matrix, mapped, product
-from splinesdf.io.readers.svg_walk import Context, Document, Drawn, inside, walk
+from splinesdf.io.readers.svg_walk import Document, inside, walk
 from splinesdf.shapes.region import Loops, difference, region, union
 
 # A loop flatter than this share of its length is a line there and back: beyond rounding, and

@@ -5,9 +5,9 @@ from __future__ import annotations
 from contextlib import suppress
 
 from splinesdf.errors import InputError
+from splinesdf.io.readers.svg_context import Drawn
 from splinesdf.io.readers.svg_lengths import length
 from splinesdf.io.readers.svg_transform import mapped
-from splinesdf.io.readers.svg_walk import Drawn
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.sources.stroke import Pen, stroke_region
 

@@ -10,7 +10,7 @@ The stack is explicit because documents may be nested deeper than Python's calls
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from xml.etree import ElementTree
@@ -20,13 +20,15 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_clip import Clip, window
+from splinesdf.io.readers.svg_context import Context, Drawn
 from splinesdf.io.readers.svg_document import tag_of
-from splinesdf.io.readers.svg_lengths import DEFAULT_VIEW, View, fitted, font_size, length, view_box
-from splinesdf.io.readers.svg_outlines import OUTLINES, Loops, Outline, as_styled, outline
+from splinesdf.io.readers.svg_lengths import View, fitted, font_size, length, view_box
+from splinesdf.io.readers.svg_outlines import OUTLINES, Outline, as_styled, outline
 from splinesdf.io.readers.svg_paint import seen
-from splinesdf.io.readers.svg_style import INHERITED, Styles, is_painted, share
-from splinesdf.io.readers.svg_transform import IDENTITY, Matrix, mapped, parse_transform, product
+from splinesdf.io.readers.svg_style import INHERITED, Styles, share
+from splinesdf.io.readers.svg_transform import Matrix, mapped, parse_transform, product
 from splinesdf.shapes.loops import TooMuch, check_count, check_place
+from splinesdf.shapes.region import Loops
 
 _GROUPS = {"svg", "g", "a", "switch", "symbol", "use"}
 # What is in these is drawn only where something refers to it, or never.
@@ -43,66 +45,6 @@ _MOST_DRAWN = 1_000_000
 _MOST_CUTS = 100_000
 _MARKERS = ("", "-start", "-mid", "-end")
 _XLINK = "{http://www.w3.org/1999/xlink}href"
-
-
-@dataclass(frozen=True)
-class Context:
-    """What an element hands down to its children."""
-
-    matrix: Matrix = IDENTITY
-    style: dict[str, str] = field(default_factory=dict)
-    view: View = DEFAULT_VIEW
-    clips: tuple[Clip, ...] = ()
-    # The elements that are referred to around this one: none may refer to itself.
-    uses: tuple[ElementTree.Element, ...] = ()
-    # Of the element and those around it: ids, and what groups are called as layers.
-    ids: tuple[str, ...] = ()
-    layers: tuple[str, ...] = ()
-    clipping: bool = False  # whether it is a clip that is drawn, where opacity says nothing
-
-    def paint(self, key: str, default: str) -> str:
-        """What a fill or a stroke is painted with."""
-        found = self.style.get(key, default)
-        return self.style.get("color", "black") if found == "currentcolor" else found
-
-    @property
-    def filled(self) -> bool:
-        """Whether a fill is seen."""
-        return is_painted(self.paint("fill", "black"), self.style.get("fill-opacity", "1"))
-
-    @property
-    def stroked(self) -> bool:
-        """Whether a stroke is seen."""
-        style = self.style
-        if not is_painted(self.paint("stroke", "none"), style.get("stroke-opacity", "1")):
-            return False
-        width = style.get("stroke-width", "1")
-        return share(width.removesuffix("px")) > 0.0 if not width.endswith("%") else True
-
-    @property
-    def rule(self) -> str | None:
-        """The fill rule, if one is given."""
-        found = self.style.get("fill-rule")
-        return found if found in ("nonzero", "evenodd") else None
-
-    @property
-    def visible(self) -> bool:
-        """Whether it is not hidden."""
-        return self.style.get("visibility", "visible") not in ("hidden", "collapse")
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """One element's subpaths in the document's coordinates, and how it is painted."""
-
-    tag: str
-    loops: list[list[Floats]]
-    context: Context
-    label: str
-    # The same in the element's own coordinates, in which it is stroked: none if the transform does
-    # not stretch its stroke.
-    own: list[list[Floats]] | None
-    closed: Sequence[bool]
 
 
 @dataclass(frozen=True)
