@@ -1,4 +1,4 @@
-"""Quadratic triangles judged by nodes and numbers alone: does the mesh conform, what is the function?"""
+"""Quadratic triangles judged by their nodes alone: does the mesh conform, what is the function?"""
 
 from __future__ import annotations
 

@@ -113,8 +113,8 @@ def check_format(
     suffix = as_path(path).suffix.lower()
     if suffix in FIELDS:
         raise InputError(
-            f"expected a spline for {suffix}, got contours: write a fit's spline, or name another "
-            f"file, ending in {', '.join(sorted(WRITERS))}"
+            f"expected a spline for {suffix}, got none: give the spline of a fit, or for contours "
+            f"a file name ending in {', '.join(sorted(WRITERS))}"
         )
     if suffix not in WRITERS:
         raise InputError(

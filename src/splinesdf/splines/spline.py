@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -286,7 +285,7 @@ class SplineSDF:
         return archive_dict(self._archive)
 
     @classmethod
-    def from_dict(cls, content: Mapping[str, Any]) -> SplineSDF:
+    def from_dict(cls, content: dict[str, Any]) -> SplineSDF:
         """The spline that `to_dict` gave, to the bit; raises `InputError` if it is not one."""
         return cls(*archive_from(content))
 
