@@ -21,6 +21,8 @@ def saved_file(path: Path) -> Iterator[BinaryIO]:
             raise InputError(f"expected a saved fit, but {name!r} is not a regular file")
         with path.open("rb") as file:
             yield file
+    except InputError:
+        raise
     except FileNotFoundError as error:
         raise InputError(f"expected a saved fit, but {name!r} does not exist") from error
     except IsADirectoryError as error:
@@ -29,3 +31,5 @@ def saved_file(path: Path) -> Iterator[BinaryIO]:
         raise InputError(f"cannot read {name!r}: not enough memory") from error
     except OSError as error:
         raise InputError(f"cannot read {name!r}: {error.strerror or error}") from error
+    except ValueError as error:  # a name with a null character
+        raise InputError(f"cannot read {name!r}: {error}") from error
