@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -55,7 +56,21 @@ def test_the_file_is_xml_of_quadratic_triangles(tmp_path: Path) -> None:
     # 12 vertices, 6 centers, 17 sides, 24 half-diagonals.
     assert piece.attrib == {"NumberOfPoints": "59", "NumberOfCells": "24"}
     assert [node.tag for node in root.iter("FieldData")] == []  # nothing is known of it
+    cells = {array.attrib["Name"]: decoded(array) for array in root.find(".//Cells") or ()}
+    assert cells["offsets"].tolist() == list(range(6, 24 * 6 + 1, 6))
+    assert cells["types"].tolist() == [22] * 24
+    wanted = spline.triangles().triangles.ravel()
+    assert np.array_equal(cells["connectivity"], wanted)
     assert meshio.read(tmp_path / "field.vtu").cells[0].data.shape == (24, 6)
+
+
+def decoded(array: ElementTree.Element) -> np.ndarray:
+    """What VTK's XML says is in base64: the number of bytes, then these."""
+    assert array.attrib["format"] == "binary"
+    data = base64.b64decode(array.text or "")
+    assert int.from_bytes(data[:8], "little") == len(data) - 8
+    kinds = {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}
+    return np.frombuffer(data[8:], dtype=kinds[array.attrib["type"]])
 
 
 @pytest.mark.parametrize(

@@ -130,6 +130,19 @@ def test_any_tree(seed: int, m: int, n: int, share: float, x: float, width: floa
     assert len(mesh.triangles) == naive_count(tree)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("low", "high", "roots"), [(-3.0, 4.36, 3), (0.5, 7.91, 7)])
+def test_nodes_on_the_border_are_on_it(low: float, high: float, roots: int, turned: bool) -> None:
+    """Where the last cell's end is rounded to beyond the domain, and to before its end."""
+    domain = (0.0, low, 1.0, high) if turned else (low, 0.0, high, 1.0)
+    tree = Quadtree.uniform(domain, *((1, roots) if turned else (roots, 1)))
+    assert tree.boxes[:, 2 + turned].max() != high
+    spline = quasi_interpolate(wavy, tree, "P")
+    mesh = spline.triangles()
+    check_conforming(mesh, domain)
+    assert np.isfinite(spline(mesh.points, outside="nan")).all()
+
+
 def test_a_lattice_beyond_the_products_of_two_integers() -> None:
     """The finest cells would be 2 ** 38 columns and 2 ** 26 rows."""
     roots = 2**12
@@ -172,6 +185,15 @@ def test_what_is_not_continuous_is_refused(where: tuple[int, int], tree: bool) -
     broken = dataclasses.replace(spline, ordinates=ordinates)
     with pytest.raises(ss.InputError, match="continuous spline"):
         broken.triangles()
+
+
+def test_cells_that_differ_in_a_corner_only() -> None:
+    """The middles of the sides are as they were: what V gains, E loses twice."""
+    spline = quasi_interpolate(wavy, Grid.uniform(UNIT, 4, 4), "W")
+    ordinates = spline.ordinates.copy()
+    ordinates[5, [0, 4, 7]] += 1e-6 * np.array([1.0, -0.5, -0.5])
+    with pytest.raises(ss.InputError, match="continuous spline"):
+        dataclasses.replace(spline, ordinates=ordinates).triangles()
 
 
 def test_what_has_no_such_mesh_is_refused() -> None:

@@ -21,7 +21,7 @@ from splinesdf.ground.npz import Fields
 from splinesdf.ground.paths import as_path, shortened
 from splinesdf.ground.saved_file import saved_file
 
-# Bytes of a file: a fit of a million cells has 170 MB. More: lists take up to twenty times as much
+# Bytes of a file: a fit of a million cells has 180 MB. More: lists take up to twenty times as much
 # memory as the text; fewer: fits are refused that .npz holds without effort.
 _LARGEST = 2**28
 _FLOATS = ("domain", "x", "y", "ordinates", "control")

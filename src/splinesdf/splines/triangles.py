@@ -137,14 +137,13 @@ def _vertices(mesh: Mesh) -> _Vertices:
     keys, first, number = np.unique(keys, return_index=True, return_inverse=True)
     column, row = np.divmod(keys, len(y))
     points = np.stack([boxes[:, _AROUND_X], boxes[:, _AROUND_Y]], axis=-1).reshape(-1, 2)[first]
-    # The last corner of a quadtree is rounded: it may lie outside the domain.
-    ends = np.array(mesh.domain)
-    points[column == len(x) - 1, 0] = ends[2]
-    points[row == len(y) - 1, 1] = ends[3]
+    # Those of a quadtree are rounded, and may lie outside the domain.
+    points[column == len(x) - 1, 0] = mesh.domain[2]
+    points[row == len(y) - 1, 1] = mesh.domain[3]
     return _Vertices(
         number.reshape(-1, 4),
         np.column_stack([x[column], y[row]]),
-        np.clip(points, ends[:2], ends[2:]),
+        points,
         np.argsort(row * len(x) + column),
     )
 
