@@ -203,6 +203,7 @@ def test_what_has_no_such_mesh_is_refused() -> None:
     for spline, message in (
         (ss.SplineSDF(grid, np.zeros((4, CUBIC.numbers)), element=CUBIC), "got a cubic one: fit"),
         (ss.SplineSDF(grid, nan), "finite"),
+        (ss.SplineSDF(grid, np.full((4, 8), 1e308)), r"up to 1e\+100"),
         (ss.SplineSDF(grid, np.zeros((3, 8))), "4 cells, got of 3"),
         (ss.SplineSDF("mesh", np.zeros((4, 8))), "Grid or a Quadtree"),  # type: ignore[arg-type]
     ):

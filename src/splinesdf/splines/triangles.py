@@ -21,6 +21,7 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.meshes import Mesh
+from splinesdf.meshes.mesh import SQUARABLE
 from splinesdf.spaces.element import Element
 from splinesdf.spaces.space import space_on
 
@@ -78,7 +79,7 @@ def quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Triang
     Raises
     ------
     InputError
-        If the spline is of another degree, not finite, or no continuous function.
+        If the spline is of another degree, not finite or beyond 1e100, or not continuous.
     """
     if element.degree != 2:
         raise InputError(
@@ -88,8 +89,8 @@ def quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Triang
     space_on(mesh, element)  # refuses what is no mesh
     if len(numbers) != mesh.cell_count:
         raise InputError(f"expected ordinates of {mesh.cell_count} cells, got of {len(numbers)}")
-    if not np.isfinite(numbers).all():
-        raise InputError("expected finite ordinates, got NaN or infinity")
+    if not np.max(np.abs(numbers)) <= SQUARABLE:  # NaN must fail
+        raise InputError(f"expected finite ordinates up to {SQUARABLE:g}, got others")
     vertices = _vertices(mesh)
     pieces = _pieces(vertices)
     cell, first, last = pieces.side // 4, pieces.start, pieces.start[pieces.following]
