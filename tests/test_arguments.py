@@ -63,7 +63,7 @@ KINDS: dict[str, str] = {
             *("shape", "space", "operator", "element", "stroke", "ignore", "layers", "text"),
             *("ids", "stroke_color"),
             *("location", "geometry", "certify", "coarse", "once", "fitted", "outside", "path"),
-            *("fill", "close", "name"),
+            *("fill", "close", "name", "content"),
             *("contours", "contour", "arcs", "units", "milling", "direction", "smooth", "periodic"),
             *("y_down", "notes", "loops", "sections", "x", "y", "mesh", "made", "closed", "parent"),
             *("function", "starts", "split", "columns", "rows", "spline", "ax", "result", "filled"),

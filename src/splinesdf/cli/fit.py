@@ -21,6 +21,8 @@ from splinesdf.cli.shapes import (
     tolerance_option,
 )
 from splinesdf.fits.fit import FitResult, fit_steps, require_reached
+from splinesdf.io.fields import FIELDS, SAVED
+from splinesdf.spaces.elements import find_element
 
 
 @click.command()
@@ -44,23 +46,29 @@ from splinesdf.fits.fit import FitResult, fit_steps, require_reached
 @click.option("--no-proof", is_flag=True, help="Sample what a proof takes a closer look for.")
 @click.option("--domain", type=float, nargs=4, help="XMIN YMIN XMAX YMAX.")
 @click.option("--max-cells", type=click.IntRange(min=1), help="Give up beyond so many cells.")
-@click.option("-o", "--output", help="Save the fit as .npz.")
+@click.option(
+    "-o",
+    "--output",
+    "outputs",
+    multiple=True,
+    help="Save the fit as .npz or .json, write its field as .vtu; again.",
+)
 @click.option("--plot", "picture", help="Draw the fit as .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
 def fit(
     shape: str,
     reading: dict[str, Any],
     tolerance: float | None,
-    output: str | None,
+    outputs: tuple[str, ...],
     picture: str | None,
     as_json: bool,
     **options: Any,
 ) -> None:
     """Fit a signed distance function to SHAPE within a tolerance."""
     source = read_shape(shape, reading)
-    check_outputs(shape, output, picture)
-    if output is not None and Path(output).suffix.lower() != ".npz":
-        raise ss.InputError(f"expected a file name ending in .npz for a fit, got {output!r}")
+    check_outputs(shape, *outputs, picture)
+    for output in outputs:
+        _check_fit(output, options["element"])
     if picture is not None:
         from splinesdf.plot import check_format as check_picture
 
@@ -71,8 +79,11 @@ def fit(
     began = time.perf_counter()
     result = fitted(source, tolerance_of(source, tolerance), **options)
     seconds = time.perf_counter() - began
-    if output is not None:
-        result.spline.save(output)
+    for output in outputs:
+        if _suffix(output) in FIELDS:
+            ss.write(output, result.spline)
+        else:
+            result.spline.save(output)
     if picture is not None:
         draw(result, source, picture)
     if as_json:
@@ -80,7 +91,25 @@ def fit(
         click.echo(json.dumps(figures, indent=2))
     else:
         report.print_fit(result, source, seconds)
-        report.print_written(output, picture)
+        report.print_written(*outputs, picture)
+
+
+def _suffix(path: str) -> str:
+    return Path(path).suffix.lower()
+
+
+def _check_fit(path: str, element: str) -> None:
+    """Refuse, before the work, a file that cannot hold the fit."""
+    if _suffix(path) not in {*SAVED, *FIELDS}:
+        raise ss.InputError(
+            f"expected a file name ending in {', '.join(sorted({*SAVED, *FIELDS}))} for a fit, got "
+            f"{path!r}"
+        )
+    if _suffix(path) in FIELDS and find_element(element).degree != 2:
+        raise ss.InputError(
+            f"expected a quadratic element for {_suffix(path)}, got {element}: save the fit as "
+            ".npz or .json"
+        )
 
 
 def fitted(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:

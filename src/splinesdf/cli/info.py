@@ -10,6 +10,7 @@ import click
 import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.shapes import (
+    holds_fit,
     read_shape,
     reading_options,
 )
@@ -19,8 +20,8 @@ from splinesdf.cli.shapes import (
 @click.argument("file")
 @reading_options
 def info(file: str, reading: dict[str, Any]) -> None:
-    """Describe FILE: a saved fit (.npz) or a shape."""
-    if Path(file).suffix.lower() == ".npz":
+    """Describe FILE: a saved fit (.npz, .json) or a shape."""
+    if holds_fit(file):
         spline = ss.load(file)
         report.print_pairs(
             fit=spline.name or file,

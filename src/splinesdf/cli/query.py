@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import click
@@ -14,6 +13,7 @@ from splinesdf.cli import report
 from splinesdf.cli.report import working
 from splinesdf.cli.shapes import (
     check_outputs,
+    holds_fit,
     read_shape,
     reading_options,
 )
@@ -23,17 +23,17 @@ from splinesdf.io.input import read_points
 
 
 @click.command()
-@click.argument("source", metavar="FIT.npz|SHAPE")
+@click.argument("source", metavar="FIT|SHAPE")
 @click.argument("points")
 @click.option("-o", "--output", help="Write the CSV to a file and not to the screen.")
 @reading_options
 def query(source: str, points: str, output: str | None, reading: dict[str, Any]) -> None:
     """Distance and gradient at the POINTS of a CSV file: x,y,distance,gx,gy.
 
-    From a saved fit, or exact from a shape. Not a number: a point that is not one; a shape's
-    gradient on the boundary itself.
+    From a saved fit (.npz, .json), or exact from a shape. Not a number: a point that is not one; a
+    shape's gradient on the boundary itself.
     """
-    if Path(source).suffix.lower() == ".npz":
+    if holds_fit(source):
         spline = ss.load(source)
         ask: Callable[[Any], Any] = spline.value_and_gradient
     else:

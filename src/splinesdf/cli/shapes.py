@@ -17,6 +17,7 @@ from splinesdf.ground.arrays import positive
 from splinesdf.ground.atomic import check_target
 from splinesdf.io.readers.source import IGNORED, STROKES
 from splinesdf.offsets.offset import offset_tolerance
+from splinesdf.splines.json_form import is_fit
 
 _BUILT_IN = {"part": "part.svg"} | {f"gamma{i}": f"gamma{i}.json" for i in (1, 2, 3)}
 # The tolerance, as a share of the shape's larger side, if none is given.
@@ -123,6 +124,12 @@ def read_shape(text: str, reading: Mapping[str, Any]) -> ss.Shape:
     for note in shape.notes:
         click.echo(f"note: {note}", err=True)
     return shape
+
+
+def holds_fit(path: str) -> bool:
+    """Whether a file is a saved fit: by its ending, .json by what is in it."""
+    suffix = Path(path).suffix.lower()
+    return suffix == ".npz" or (suffix == ".json" and is_fit(Path(path)))
 
 
 def check_outputs(source: str, *outputs: str | None) -> None:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from splinesdf.errors import InputError
 from splinesdf.ground.paths import as_path, shortened
+from splinesdf.ground.saved_file import saved_file
 
 Fields = dict[str, NDArray[Any]]
 
@@ -64,42 +65,37 @@ def read_npz(path: Path) -> Fields:
         If the file is missing, cannot be read, is damaged, or is no such file.
     """
     name = shortened(str(as_path(path)))
-    try:
-        if path.exists() and not path.is_file() and not path.is_dir():
-            # A pipe would be waited for, a device might never end.
-            raise InputError(f"expected a saved fit, but {name!r} is not a regular file")
-        with path.open("rb") as file, zipfile.ZipFile(file) as archive:
-            members = archive.infolist()
-            # Of this very file: under its name there may be another one by now.
-            length = os.fstat(file.fileno()).st_size
-            # Compressed or overlapping members are how a small file can hold a large one.
-            if sum(member.file_size for member in members) > length:
-                raise _Unusual("compressed, or longer than the file")
-            fields = {
-                member.filename.removesuffix(".npy"): _read_array(archive, member)
-                for member in members
-            }
-            if len(fields) < len(members):
-                raise _Unusual("two arrays have one name")
-            return fields
-    except InputError:
-        raise
-    except FileNotFoundError as error:
-        raise InputError(f"expected a saved fit, but {name!r} does not exist") from error
-    except IsADirectoryError as error:
-        raise InputError(f"expected a saved fit, got the folder {name!r}") from error
-    except MemoryError as error:
-        raise InputError(f"cannot read {name!r}: not enough memory") from error
-    except Exception as error:
-        # On damaged bytes zipfile and NumPy raise a dozen kinds, for one the system's error for
-        # going to a place before the file.
-        if isinstance(error, OSError) and error.errno != errno.EINVAL:
-            raise InputError(f"cannot read {name!r}: {error.strerror or error}") from error
-        reason = f" ({error})" if isinstance(error, _Unusual) else ""
-        raise InputError(
-            f"expected a fit saved by splinesdf (.npz), but {name!r} is another file or damaged"
-            f"{reason}: save it again"
-        ) from error
+    with saved_file(path) as file:
+        try:
+            return _read_members(file)
+        except (InputError, MemoryError):
+            raise
+        except Exception as error:
+            # On damaged bytes zipfile and NumPy raise a dozen kinds, for one the system's error
+            # for going to a place before the file.
+            if isinstance(error, OSError) and error.errno != errno.EINVAL:
+                raise
+            reason = f" ({error})" if isinstance(error, _Unusual) else ""
+            raise InputError(
+                f"expected a fit saved by splinesdf (.npz), but {name!r} is another file or "
+                f"damaged{reason}: save it again"
+            ) from error
+
+
+def _read_members(file: BinaryIO) -> Fields:
+    with zipfile.ZipFile(file) as archive:
+        members = archive.infolist()
+        # Of this very file: under its name there may be another one by now.
+        length = os.fstat(file.fileno()).st_size
+        # Compressed or overlapping members are how a small file can hold a large one.
+        if sum(member.file_size for member in members) > length:
+            raise _Unusual("compressed, or longer than the file")
+        fields = {
+            member.filename.removesuffix(".npy"): _read_array(archive, member) for member in members
+        }
+        if len(fields) < len(members):
+            raise _Unusual("two arrays have one name")
+        return fields
 
 
 def _read_array(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> NDArray[Any]:

@@ -1,4 +1,4 @@
-"""`write`: contours to a file, in the format that the file's extension names."""
+"""`write`: contours, or a field, to a file, in the format that the file's extension names."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from splinesdf.contours.contour import Contour, box, check_tolerance, smallest_t
 from splinesdf.errors import InputError
 from splinesdf.ground.atomic import write_text
 from splinesdf.ground.paths import as_path
+from splinesdf.io.fields import FIELDS, write_field
 from splinesdf.io.writers import WRITERS
 from splinesdf.io.writers.options import Milling, Options, check_options, factor
+from splinesdf.splines.spline import SplineSDF
 
 # The default tolerance as a share of the contours' size: far below what a machine cuts or a
 # screen shows, while a circle still takes only about 2000 chords.
@@ -22,14 +24,14 @@ _DEFAULT_TOLERANCE = 1e-6
 
 def write(
     path: str | os.PathLike[str],
-    contours: Iterable[Contour],
+    contours: Iterable[Contour] | SplineSDF,
     *,
     tolerance: float | None = None,
     arcs: bool = False,
     units: str | None = None,
     milling: Milling | None = None,
 ) -> None:
-    """Write contours to a file, whole or not at all.
+    """Write contours, or the field of a spline, to a file, whole or not at all.
 
     Parameters
     ----------
@@ -41,11 +43,13 @@ def write(
         ``.nc .ngc .gcode``      G1, G2, G3: lines and circular arcs
         ``.geojson .wkt``        polygons with holes, or lines where a contour is open
         ``.csv``                 points
+        ``.vtu``                 a spline: exact, on quadratic triangles (`SplineSDF.triangles`)
         ======================== ===========================================================
 
         DXF and G-code have y pointing up, SVG pointing down: contours are mirrored where the
         source has it the other way. The others hold the coordinates as they are.
-    contours : iterable of Contour
+    contours : iterable of Contour, or SplineSDF
+        A spline takes none of the options.
     tolerance : float, optional
         How far the file may be from the contours, where it is not exact. Default: 1e-6 of the
         larger side of the contours' box, or the rounding of the coordinates if that is more.
@@ -67,6 +71,9 @@ def write(
     MissingExtraError
         For ``.dxf`` without ezdxf.
     """
+    if isinstance(contours, SplineSDF):
+        given = {"tolerance": tolerance, "arcs": arcs, "units": units, "milling": milling}
+        return write_field(path, contours, given)
     suffix = check_format(path, arcs=arcs, units=units, milling=milling)
     chains = _as_contours(contours)
     xmin, ymin, xmax, ymax = box(chains)
@@ -104,6 +111,11 @@ def check_format(
 ) -> str:
     """The extension, in lower case, or an `InputError` if no such file can be written."""
     suffix = as_path(path).suffix.lower()
+    if suffix in FIELDS:
+        raise InputError(
+            f"expected a spline for {suffix}, got none: give the spline of a fit, or for contours "
+            f"a file name ending in {', '.join(sorted(WRITERS))}"
+        )
     if suffix not in WRITERS:
         raise InputError(
             f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"
@@ -115,6 +127,8 @@ def check_format(
 def _as_contours(contours: Iterable[Contour]) -> list[Contour]:
     if isinstance(contours, Contour):
         raise InputError("expected a list of contours, got one Contour: put it in brackets")
+    if not isinstance(contours, Iterable):
+        raise InputError(f"expected a list of contours or a spline, got {type(contours).__name__}")
     chains = list(contours)
     for chain in chains:
         if not isinstance(chain, Contour):

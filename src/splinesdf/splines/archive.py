@@ -1,4 +1,4 @@
-"""A spline as one ``.npz`` file: what it needs and nothing that could contradict itself.
+"""A spline as one file: what it needs and nothing that could contradict itself.
 
     format, version    "splinesdf" and 3
     domain, shape,     of a quadtree, as in `Quadtree`, and one flag a node, level after level: is
@@ -10,6 +10,8 @@
     about              JSON as UTF-8: name and y_down, which the shape shares with the fit, its
                        fill rule and notes, the provenance, and the element's name
 
+The file is an ``.npz`` of these arrays, or ``.json`` (see `json_form`).
+
 Version 2 knew only the quadratic element. Version 1 had name and y_down as arrays of their own, and
 neither a shape nor a provenance.
 """
@@ -18,7 +20,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import math
 import os
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
@@ -27,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import LARGEST, Floats, Ints, largest_coordinate
+from splinesdf.ground.arrays import LARGEST, Floats, Ints, largest_coordinate, positive
 from splinesdf.ground.atomic import atomic_file
 from splinesdf.ground.npz import Fields, read_npz, write_npz
 from splinesdf.ground.paths import as_path, shortened
@@ -38,6 +39,7 @@ from splinesdf.spaces.element import Element
 from splinesdf.spaces.elements import find_element
 from splinesdf.spaces.quadratic import QUADRATIC
 from splinesdf.spaces.space import space_on
+from splinesdf.splines.json_form import from_plain, read_json, to_plain, write_json
 from splinesdf.splines.provenance import Provenance
 
 # Raised when an older reader would misunderstand a file.
@@ -69,13 +71,10 @@ def write_archive(path: str | os.PathLike[str], archive: Archive) -> None:
     InputError
         If the file cannot be written, or could not be read again: the same checks are made.
     """
-    fields = _fields(archive)
-    try:
-        _checked(fields)
-    except InputError as error:
-        raise InputError(f"cannot save this fit: {error}") from error
+    fields = _checked_fields(archive)
+    write_fields = write_json if _is_json(path) else write_npz
     with atomic_file(path) as file:
-        write_npz(file, fields)
+        write_fields(file, fields)
 
 
 def read_archive(path: str | os.PathLike[str]) -> Archive:
@@ -86,12 +85,35 @@ def read_archive(path: str | os.PathLike[str]) -> Archive:
     InputError
         If the file is missing, no saved fit, damaged, or of a newer version.
     """
-    fields = read_npz(as_path(path))
+    fields = (read_json if _is_json(path) else read_npz)(as_path(path))
     try:
         return _checked(fields)
     except InputError as error:
         name = shortened(str(path))
         raise InputError(f"{name!r} is not a usable saved fit: {error}") from error
+
+
+def archive_dict(archive: Archive) -> dict[str, Any]:
+    """The contents of a JSON file; raises as `write_archive`."""
+    return to_plain(_checked_fields(archive))
+
+
+def archive_from(content: object) -> Archive:
+    """What `archive_dict` made, checked as a file is."""
+    return _checked(from_plain(content))
+
+
+def _is_json(path: str | os.PathLike[str]) -> bool:
+    return as_path(path).suffix.lower() == ".json"
+
+
+def _checked_fields(archive: Archive) -> Fields:
+    fields = _fields(archive)
+    try:
+        _checked(fields)
+    except InputError as error:
+        raise InputError(f"cannot save this fit: {error}") from error
+    return fields
 
 
 def _fields(archive: Archive) -> Fields:
@@ -194,8 +216,8 @@ def _shape(fields: Fields, about: object, name: str, y_down: bool) -> Shape | No
         return None
     words = _members(about, {"fill", "notes", "unit"}, "shape")
     fill, notes, unit = words["fill"], _typed(words["notes"], list, "notes"), words["unit"]
-    if unit is not None and not (_typed(unit, float, "unit") > 0.0 and math.isfinite(unit)):
-        raise InputError(f"expected a unit above 0, got {unit:g}")
+    if unit is not None:
+        unit = positive(unit, "unit")
     if fill not in ("nonzero", "evenodd"):
         raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r:.60}")
     control = _floats(fields, "control", (None, 2))

@@ -6,7 +6,7 @@ import math
 import os
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,10 +25,19 @@ from splinesdf.spaces.quadratic import QUADRATIC
 from splinesdf.spaces.space import Space, space_on
 from splinesdf.spaces.tables import Evaluated
 from splinesdf.spaces.tensor import bspline_coefficients, tensor_ordinates
-from splinesdf.splines.archive import Archive, read_archive, write_archive
+from splinesdf.splines.archive import (
+    Archive,
+    archive_dict,
+    archive_from,
+    read_archive,
+    write_archive,
+)
+from splinesdf.splines.border import border_of, extend_lattice
+from splinesdf.splines.finite_elements import skfem_basis
 from splinesdf.splines.level_sets import contours
 from splinesdf.splines.provenance import Provenance
 from splinesdf.splines.tables import Border
+from splinesdf.splines.triangles import Triangles, quadratic_triangles
 
 # After the first step along the gradient, which an exact distance would make the last, so many
 # Newton steps bring the point onto the zero level set. Each squares what is left of the error.
@@ -36,8 +45,6 @@ _CORRECTIONS = 3
 # With fewer nodes of a grid a cell than this, to go from node to node is quicker than from cell
 # to cell.
 _NODES = 8
-# Nodes of a grid outside the domain that a thread extends to at a time.
-_OUTER = 8192
 
 Outside = Literal["extend", "nan"]
 
@@ -158,7 +165,7 @@ class SplineSDF:
         count = len(self.ordinates)
         in_blocks(count, work, size=min(4096, math.ceil(count / (4 * processors()))))
         if outside == "extend":
-            self._extend_lattice(x, y, distance)
+            extend_lattice(self.domain, self._border, x, y, distance)
         return DistanceGrid(x, y, distance)
 
     def gradient(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
@@ -242,19 +249,63 @@ class SplineSDF:
         unit = None if self.shape is None else self.shape.unit
         return nested([replace(contour, unit=unit) for contour in found])
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the spline to an ``.npz`` file, its shape and provenance with it.
+    def triangles(self) -> Triangles:
+        """The spline as a conforming mesh of quadratic Lagrange triangles, exact to rounding.
 
-        The file is whole or not there: if the writing is cut short, killed even, what stood under
-        the name before is untouched. `splinesdf.load` reads it.
+        Four triangles a cell, more where cells of a quadtree have smaller neighbors: there a
+        triangle is a fan from the cell's center to their corners. No node hangs on an edge.
+
+        Raises
+        ------
+        InputError
+            If the spline is cubic, not finite, or not continuous (fits are).
+        """
+        return quadratic_triangles(self.mesh, self.element, self.ordinates)
+
+    def to_skfem(self) -> tuple[Any, Floats]:
+        """The spline for scikit-fem: the basis of its `triangles`, and the coefficients in it.
+
+        The basis is of ``ElementTriP2`` on a ``MeshTri``. With ``basis, vector = s.to_skfem()``
+        the values at points (2, n) are ``basis.interpolator(vector)(x)``.
+
+        Raises
+        ------
+        InputError
+            As `triangles`.
+        MissingExtraError
+            Without scikit-fem.
+        """
+        return skfem_basis(self.triangles())
+
+    def to_dict(self) -> dict[str, Any]:
+        """All that a saved file holds, as texts, numbers, lists and dicts, for JSON.
+
+        docs/fields.md says what is where, and evaluates a spline from it. Raises as `save`.
+        """
+        return archive_dict(self._archive)
+
+    @classmethod
+    def from_dict(cls, content: dict[str, Any]) -> SplineSDF:
+        """The spline that `to_dict` gave, to the bit; raises `InputError` if it is not one."""
+        return cls(*archive_from(content))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the spline to an ``.npz`` or ``.json`` file, its shape and provenance with it.
+
+        Both hold the same, to the bit. The file is whole or not there: if the writing is cut
+        short, killed even, what stood under the name before is untouched. `splinesdf.load` reads
+        it.
 
         Raises
         ------
         InputError
             If the file cannot be written, or a number of the spline is not finite.
         """
-        fields = (getattr(self, name) for name in Archive._fields)
-        write_archive(path, Archive(*fields))
+        write_archive(path, self._archive)
+
+    @property
+    def _archive(self) -> Archive:
+        return Archive(*(getattr(self, name) for name in Archive._fields))
 
     def _check_quadratic(self, expected: str) -> None:
         if self.element.degree != 2:
@@ -276,33 +327,8 @@ class SplineSDF:
 
     @cached_property
     def _border(self) -> Border:
-        """The spline along the domain's border, see `splinesdf.splines.kernels.extension`."""
         self._check_quadratic('outside="nan" of it')
-        from splinesdf.splines.kernels.extension import fill_drops
-
-        boxes, corners = self.mesh.local_boxes, self.mesh.corners
-        edges = []
-        # Side after side: cells beside it, by which corner; columns of V, E, V; the axis along it.
-        for by, columns, axis in (
-            (1, (0, 4, 1), 0),
-            (2, (1, 5, 3), 1),
-            (3, (2, 6, 3), 0),
-            (0, (0, 7, 2), 1),
-        ):
-            last = corners[:, by].max() if by > 1 else corners[:, by].min()
-            cells = np.flatnonzero(corners[:, by] == last)
-            cells = cells[np.argsort(corners[cells, axis])]
-            ordinates = self.ordinates[cells][:, columns]
-            side = np.column_stack([boxes[cells, axis], ordinates[:, 0], ordinates[:, 1]])
-            length = self.domain[axis + 2] - self.domain[axis]
-            edges.append(np.vstack([side, [length, ordinates[-1, 2], 0.0]]))
-        counts = np.array([len(side) for side in edges])
-        starts = np.concatenate([[0], np.cumsum(counts)])
-        drops = np.zeros((4, 2 << math.ceil(math.log2(counts.max()))))
-        table = np.ascontiguousarray(np.concatenate(edges))
-        border = Border(starts, table, drops)
-        fill_drops(border)
-        return border
+        return border_of(self.mesh, self.ordinates)
 
     def _evaluate(
         self, array: Floats, order: int, outside: Outside
@@ -327,22 +353,6 @@ class SplineSDF:
         from splinesdf.splines.kernels.extension import extend
 
         extend(np.array(self.domain), self._border, evaluated)
-
-    def _extend_lattice(self, x: Floats, y: Floats, distance: Floats) -> None:
-        """Fill the nodes outside the domain."""
-        xmin, ymin, xmax, ymax = self.domain
-        beside = (y < ymin) | (y > ymax)
-        nodes = np.flatnonzero(beside[:, None] | ((x < xmin) | (x > xmax)))
-        flat = distance.reshape(-1)
-
-        def work(part: slice) -> None:
-            j, i = np.divmod(nodes[part], len(x))
-            value = np.empty(len(i))
-            points = np.column_stack([x[i], y[j]])
-            self._extend(Evaluated(points, value, np.empty((0, 2)), np.empty((0, 3))))
-            flat[nodes[part]] = value
-
-        in_blocks(len(nodes), work, size=_OUTER)
 
     def _nodes_of_cells(self, nodes: Floats, axis: int) -> Ints:
         """The range of increasing nodes in each cell; the last cells have the border's too."""

@@ -34,6 +34,8 @@ def json_shape(source: Source, options: Options) -> Shape:
         raise InputError(f"expected formulas as JSON, got something else: {error}") from error
     if isinstance(content, dict) and content.get("type") in TYPES:
         return geojson_shape(source, options)
+    if isinstance(content, dict) and content.get("format") == "splinesdf":
+        raise InputError("expected a shape, got a saved fit: splinesdf.load reads it")
     return formula_shape(content, source.stem, options)
 
 

@@ -1,0 +1,67 @@
+"""A spline's field to a file, in the format that the file's extension names."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from splinesdf.errors import InputError
+from splinesdf.ground.atomic import atomic_file
+from splinesdf.ground.paths import as_path
+from splinesdf.io.writers import WRITERS
+from splinesdf.io.writers.vtu import vtu_bytes
+from splinesdf.splines.spline import SplineSDF
+
+FIELDS = frozenset({".vtu"})
+SAVED = frozenset({".npz", ".json"})
+
+
+def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: dict[str, Any]) -> None:
+    """Write a spline, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+    spline : SplineSDF
+    given : dict
+        Options of `splinesdf.write` by name: none has a use here.
+
+    Raises
+    ------
+    InputError
+        If the extension is not of a field, an option is given, `SplineSDF.triangles` is refused,
+        or the file cannot be written.
+    """
+    suffix = check_field(path)
+    for name, value in given.items():
+        if value is not None and value is not False:
+            raise InputError(
+                f"expected {name} only for contours, got it for a spline and {suffix}: leave it out"
+            )
+    made = spline.made
+    known = {} if made is None else {"error": made.error, "bound": made.bound}
+    facts = {name: value for name, value in known.items() if value is not None}
+    data = vtu_bytes(spline.triangles(), facts)
+    with atomic_file(path) as file:
+        file.write(data)
+
+
+def check_field(path: str | os.PathLike[str]) -> str:
+    """The extension, in lower case, or an `InputError` if it is none of a field."""
+    suffix = as_path(path).suffix.lower()
+    if suffix in WRITERS:
+        raise InputError(
+            f"expected contours for {suffix}, got a spline: write its level sets, as "
+            f"spline.contours(0.0), or the field as {_listed()}"
+        )
+    if suffix in SAVED:
+        raise InputError(f"expected {_listed()} for a field, got {suffix}: use spline.save")
+    if suffix not in FIELDS:
+        raise InputError(
+            f"expected a file name ending in {_listed()} for a field, got {os.fspath(path)!r}"
+        )
+    return suffix
+
+
+def _listed() -> str:
+    return ", ".join(sorted(FIELDS))
