@@ -178,14 +178,6 @@ def test_a_transform_stretches_the_stroke(outlined: Callable[..., ss.Shape]) -> 
     assert shape.box == pytest.approx((-2.0, 0.0, 2.0, 10.0), abs=1e-12)
 
 
-def test_dashes_are_refused_unless_ignored(outlined: Callable[..., ss.Shape]) -> None:
-    path = '<path d="M0 0V10" stroke="red" stroke-width="4" stroke-dasharray="1 2" fill="none"/>'
-    with pytest.raises(ss.InputError, match="without dashes"):
-        outlined(path)
-    whole = outlined(path, ignore="dashes")
-    assert area(whole.boundary) == pytest.approx(40.0, rel=1e-12)
-
-
 ICONS = sorted((DATA / "drawings" / "feather").glob("*.svg"))[::3]
 
 

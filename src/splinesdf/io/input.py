@@ -53,11 +53,12 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
         joined first where their ends meet, within 1e-6 of its size. (A fill is always closed.)
     stroke : {"none", "outline", "centre"}, optional
         Of a drawing's strokes: "none" reads what is filled only, as a stroke fills nothing;
-        "outline" also what strokes cover, with their width, caps and joins; "centre" also the
-        closed lines that are stroked and not filled, as a laser or a plotter follows them. None
-        unless the file says otherwise, as those of `write` do.
+        "outline" also what strokes cover, with their width, caps, joins and dashes; "centre" also
+        the closed lines that are stroked and not filled, as a laser or a plotter follows them.
+        None unless the file says otherwise, as those of `write` do.
     ignore : {"clip-path", "mask", "dashes"} or several
-        Read a drawing as if it had none of these, which otherwise cut it, or are refused.
+        Read a drawing as if it had none of these, which otherwise cut it, or are refused. Without
+        dashes, strokes are read whole.
     layers : str or several, optional
         Of a DXF file, or of a drawing's groups by their layer's label or id, these only; all that
         are not hidden unless given.

@@ -120,7 +120,7 @@ def _joined(boundary: Arclets, pieces: list[Floats], runs: list[tuple[int, int]]
     for first, last in runs:
         low, high = float(boundary.interval[first, 0]), float(boundary.interval[last, 1])
         control = pieces[boundary.piece[first]]
-        result.append(_stretch(control, low, high))
+        result.append(stretch(control, low, high))
         own_start.append(low in (0.0, 1.0))
         own_end.append(high in (0.0, 1.0))
     for k, (first, _) in enumerate(runs):
@@ -135,10 +135,10 @@ def _joined(boundary: Arclets, pieces: list[Floats], runs: list[tuple[int, int]]
     return result
 
 
-def _stretch(control: Floats, low: float, high: float) -> Floats:
+def stretch(control: Floats, low: float, high: float) -> Floats:
     """A piece between two parameters, turned round if the first is the larger one."""
     if low > high:
-        return np.ascontiguousarray(_stretch(control, high, low)[::-1])
+        return np.ascontiguousarray(stretch(control, high, low)[::-1])
     if (low, high) == (0.0, 1.0):
         return control.copy()
     points = control

@@ -61,10 +61,10 @@ def svg_shape(source: Source, options: Options) -> Shape:
     drawing = _by_paint(elements, options.stroke or said)
     fills, repeats = _fills(drawing.fills, options, document.found)
     lines = _closed_lines(drawing.lines, options)
+    outlined = [stroked(drawn, document) for drawn in drawing.outlined]
     notes = (*_notes(drawing, document.found), *repeats_note(repeats), *lines.notes)
     if unit := unit_note(root):
         notes = (*notes, unit)
-    outlined = [stroked(drawn, options.ignore) for drawn in drawing.outlined]
     alone = len(fills) == 1 and not (lines.loops or outlined or fills[0].context.clips)
     if alone:
         loops, rule = fills[0].loops, options.fill or fills[0].context.rule or "nonzero"

@@ -71,3 +71,4 @@ class Drawn:
     # not stretch its stroke.
     own: Loops | None
     closed: Sequence[bool]
+    said_length: str = ""  # its pathLength, as written

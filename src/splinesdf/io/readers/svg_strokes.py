@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
+from typing import NamedTuple
 
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_context import Drawn
+from splinesdf.io.readers.svg_dashes import WITHOUT, pattern_of
 from splinesdf.io.readers.svg_lengths import length
 from splinesdf.io.readers.svg_transform import mapped
+from splinesdf.io.readers.svg_walk import Document
 from splinesdf.shapes.region import Loops, region
+from splinesdf.shapes.sources.dashes import dashed
 from splinesdf.shapes.sources.stroke import Pen, stroke_region
 
 
-def stroked(drawn: Drawn, ignore: frozenset[str]) -> Loops:
+def stroked(drawn: Drawn, document: Document) -> Loops:
     """Loops around the stroke, cut to the element's clips, inside on the left.
 
     It is drawn in the element's own coordinates, so that a transform stretches it with the rest.
@@ -20,7 +26,7 @@ def stroked(drawn: Drawn, ignore: frozenset[str]) -> Loops:
     Raises
     ------
     InputError
-        If it is dashed, and that is not to be ignored; or its width is no length.
+        If it has too many dashes, or its width is no length.
     """
     style, matrix = drawn.context.style, drawn.context.matrix
     try:
@@ -29,12 +35,6 @@ def stroked(drawn: Drawn, ignore: frozenset[str]) -> Loops:
         raise InputError(f"{drawn.label}: {error}") from error
     if not width > 0.0:
         return []
-    dashes = style.get("stroke-dasharray", "none").strip()
-    if dashes not in ("none", "", "0") and "dashes" not in ignore:
-        raise InputError(
-            f"{drawn.label}: expected a stroke without dashes, got {dashes[:30]!r}: "
-            "ignore='dashes' (--ignore dashes) reads it whole"
-        )
     join = style.get("stroke-linejoin", "miter").strip()
     limit = 4.0
     with suppress(ValueError):
@@ -45,8 +45,9 @@ def stroked(drawn: Drawn, ignore: frozenset[str]) -> Loops:
         "miter" if join in ("miter-clip", "arcs") else join,
         max(limit, 1.0),
     )
+    paths = _paths(drawn, document)
     try:
-        loops = stroke_region(drawn.loops if drawn.own is None else drawn.own, drawn.closed, pen)
+        loops = stroke_region(paths.loops, paths.closed, pen, paths.along)
     except InputError as error:
         raise InputError(
             f"{drawn.label}: expected a line whose stroke has a border that curves follow: {error}"
@@ -58,3 +59,28 @@ def stroked(drawn: Drawn, ignore: frozenset[str]) -> Loops:
     for clip in drawn.context.clips:
         loops = clip.cut(region(loops, "nonzero"))
     return loops
+
+
+class _Paths(NamedTuple):
+    """What a stroke follows."""
+
+    loops: Loops
+    closed: Sequence[bool]
+    along: Sequence[Floats] | None = None
+
+
+def _paths(drawn: Drawn, document: Document) -> _Paths:
+    """An element's subpaths, or the dashes of each."""
+    loops = drawn.loops if drawn.own is None else drawn.own
+    try:
+        pattern = pattern_of(drawn, loops, document)
+    except InputError as error:
+        raise InputError(f"{drawn.label}: {error}") from error
+    if pattern is None:
+        return _Paths(loops, drawn.closed)
+    try:
+        dashes = dashed(loops, drawn.closed, pattern)
+    except InputError as error:
+        raise InputError(f"{drawn.label}: {error}: {WITHOUT}") from error
+    document.count(dashes=len(dashes.loops), pieces=sum(map(len, dashes.loops)))
+    return _Paths(dashes.loops, [False] * len(dashes.loops), dashes.along)

@@ -18,8 +18,9 @@ PROPERTIES = (
     *("clip-path", "clip-rule", "color", "display", "fill", "fill-opacity", "fill-rule", "filter"),
     *("font-size", "marker", "marker-end", "marker-mid", "marker-start", "mask", "mask-type"),
     *("opacity", "overflow", "stop-color", "stop-opacity", "stroke", "stroke-dasharray"),
-    *("stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width"),
-    *("transform", "transform-origin", "vector-effect", "visibility"),
+    *("stroke-dashoffset", "stroke-linecap", "stroke-linejoin", "stroke-miterlimit"),
+    *("stroke-opacity", "stroke-width", "transform", "transform-origin", "vector-effect"),
+    "visibility",
 )
 # Numbers of shapes, which style sheets may give as well.
 GEOMETRY = ("cx", "cy", "d", "height", "r", "rx", "ry", "width", "x", "y")
@@ -27,8 +28,9 @@ _READ = frozenset((*PROPERTIES, *GEOMETRY))
 # Those that children have from their parents.
 INHERITED = frozenset(
     ("clip-rule", "color", "fill", "fill-opacity", "fill-rule", "font-size", "marker", "marker-end",
-     "marker-mid", "marker-start", "stroke", "stroke-dasharray", "stroke-linecap",
-     "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width", "visibility")
+     "marker-mid", "marker-start", "stroke", "stroke-dasharray", "stroke-dashoffset",
+     "stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width",
+     "visibility")
 )  # fmt: skip
 # Rules of style sheets. More: each is tried on each element; none that a program writes has more.
 _MOST_RULES = 10_000

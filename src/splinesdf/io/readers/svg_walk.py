@@ -29,6 +29,7 @@ from splinesdf.io.readers.svg_style import INHERITED, Styles, share
 from splinesdf.io.readers.svg_transform import Matrix, mapped, parse_transform, product
 from splinesdf.shapes.loops import TooMuch, check_count, check_place
 from splinesdf.shapes.region import Loops
+from splinesdf.shapes.sources.dashes import MOST_DASHES
 
 _GROUPS = {"svg", "g", "a", "switch", "symbol", "use"}
 # What is in these is drawn only where something refers to it, or never.
@@ -67,7 +68,7 @@ class Document:
     ) -> None:
         self.root, self.ignore, self.clips_of, self.found = root, ignore, clips_of, Found()
         self.styles = Styles(root)
-        self._elements = self._pieces = self._cuts = 0
+        self._elements = self._pieces = self._cuts = self._dashes = 0
         self.by_id: dict[str, ElementTree.Element] = {}
         for element in root.iter():
             if name := element.get("id"):
@@ -84,16 +85,22 @@ class Document:
         name = value.strip().removeprefix("url(").rstrip(")").strip().strip("\"'")
         return self.by_id.get(name[1:]) if name.startswith("#") else None
 
-    def count(self, elements: int = 0, pieces: int = 0, cuts: int = 0) -> None:
+    def count(self, elements: int = 0, pieces: int = 0, cuts: int = 0, dashes: int = 0) -> None:
         """Refuse more than is drawn in a reasonable time, all uses and clips taken together."""
         self._elements += elements
         self._pieces += pieces
         self._cuts += cuts
+        self._dashes += dashes
         if self._elements > _MOST_DRAWN:
             raise InputError(f"expected at most {_MOST_DRAWN:,} elements drawn, got more")
         if self._cuts > _MOST_CUTS:
             raise InputError(
                 f"expected elements to be clipped up to {_MOST_CUTS:,} times, got more"
+            )
+        if self._dashes > MOST_DASHES:
+            raise InputError(
+                f"expected at most {MOST_DASHES:,} dashes in a drawing, got more: ignore='dashes' "
+                "(--ignore dashes) reads strokes whole"
             )
         check_count(self._pieces)
 
@@ -305,7 +312,8 @@ def _drawn(
             found.left_out[f"{tag} without area"] += 1
         return None
     document.count(pieces=sum(map(len, loops)), cuts=len(context.clips))
-    return Drawn(tag, loops, context, label, shape.loops, shape.closed)
+    said = element.get("pathLength", "")
+    return Drawn(tag, loops, context, label, shape.loops, shape.closed, said)
 
 
 def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:

@@ -78,7 +78,12 @@ class _Beside:
         return np.asarray(points + radius[:, None] * normal)
 
 
-def stroke_region(loops: Sequence[Sequence[Floats]], closed: Sequence[bool], pen: Pen) -> Loops:
+def stroke_region(
+    loops: Sequence[Sequence[Floats]],
+    closed: Sequence[bool],
+    pen: Pen,
+    along: Sequence[Floats] | None = None,
+) -> Loops:
     """Loops around what a stroke along paths covers, inside on the left; they may overlap.
 
     Parameters
@@ -89,14 +94,17 @@ def stroke_region(loops: Sequence[Sequence[Floats]], closed: Sequence[bool], pen
         Of each path whether its end and its start are joined; they are the same but for rounding.
         Otherwise it has caps there, even if they are the same.
     pen : Pen
+    along : sequence of ndarray, shape (2,), optional
+        Of each path the direction of its caps if it has no length, a unit vector. That of x unless
+        given.
     """
     result: Loops = []
-    for loop, is_closed in zip(loops, closed, strict=True):
+    for k, (loop, is_closed) in enumerate(zip(loops, closed, strict=True)):
         pieces = [piece for piece in loop if np.any(piece != piece[0])]
         if pieces:
             result += _stroked(pieces, is_closed, pen)
         elif len(loop) and pen.cap != "butt":
-            result += _dot(loop[0][0], pen)
+            result += _dot(loop[0][0], np.array([1.0, 0.0]) if along is None else along[k], pen)
     return result
 
 
@@ -104,7 +112,7 @@ def _stroked(pieces: list[Floats], closed: bool, pen: Pen) -> Loops:
     if closed:
         pieces = [*pieces[:-1], np.concatenate([pieces[-1][:-1], pieces[0][:1]])]
     half = 0.5 * pen.width
-    ends = [(_tangent(piece, 0), _tangent(piece, 1)) for piece in pieces]
+    ends = [(end_tangent(piece, 0), end_tangent(piece, 1)) for piece in pieces]
     result: Loops = []
     corners = [
         k
@@ -163,7 +171,7 @@ def _stretches(piece: Floats, half: float) -> list[_Stretch]:
     if len(piece) == 2:
         return [_Stretch(piece, 0.0, 1.0, "gentle")]
     if _is_round(piece, half):
-        side = _turn(_tangent(piece, 0), _tangent(piece, 1))
+        side = _turn(end_tangent(piece, 0), end_tangent(piece, 1))
         return [_Stretch(piece, 0.0, 1.0, "left" if side > 0.0 else "right")]
     result = []
     for low, high in pairwise(_turning_over(piece, half)):
@@ -227,7 +235,7 @@ def _is_loop(run: list[_Stretch]) -> bool:
         return False
     if not np.array_equal(first.piece[0], last.piece[-1]):
         return False
-    return abs(_turn(_tangent(last.piece, 1), _tangent(first.piece, 0))) <= _SMOOTH
+    return abs(_turn(end_tangent(last.piece, 1), end_tangent(first.piece, 0))) <= _SMOOTH
 
 
 def _between(run: list[_Stretch], one: float | None, other: float | None) -> Loops:
@@ -240,14 +248,17 @@ def _between(run: list[_Stretch], one: float | None, other: float | None) -> Loo
         sides.append(side)
     back = [part[::-1] for part in reversed(sides[1])]
     if _is_loop(run):
-        return region([sides[0], back], "nonzero")
-    across = [np.array([sides[0][-1][-1], back[0][0]]), np.array([back[-1][-1], sides[0][0][0]])]
-    return region([[*sides[0], across[0], *back, across[1]]], "nonzero")
+        loops = [sides[0], back]
+    else:
+        across = [sides[0][-1][-1], back[0][0]], [back[-1][-1], sides[0][0][0]]
+        loops = [[*sides[0], np.array(across[0]), *back, np.array(across[1])]]
+    # Gentle bands have the inside on the left throughout, also where they overlap themselves.
+    return loops if run[0].bend == "gentle" else region(loops, "nonzero")
 
 
 def _beside(piece: Floats, low: float, high: float, offset: float | None) -> list[Floats]:
     if len(piece) == 2 and offset is not None:
-        return [piece + offset * np.array([-1.0, 1.0]) * _tangent(piece, 0)[::-1]]
+        return [piece + offset * np.array([-1.0, 1.0]) * end_tangent(piece, 0)[::-1]]
     curve, largest = _Beside(piece, low, high, offset), float(np.abs(piece).max())
     for looser in _LOOSER:
         with suppress(InputError):
@@ -290,7 +301,7 @@ def _still(control: Floats, t: Floats) -> Bools:
     return np.asarray(np.hypot(first[:, 0], first[:, 1]) <= _STILL * most)
 
 
-def _tangent(piece: Floats, end: int) -> Floats:
+def end_tangent(piece: Floats, end: int) -> Floats:
     """The unit tangent at the start (0) or the end (1)."""
     steps = piece[1:] - piece[0] if end == 0 else piece[-1] - piece[-2::-1]
     size = np.hypot(steps[:, 0], steps[:, 1])
@@ -350,16 +361,16 @@ def _cap(at: Floats, outward: Floats, half: float, pen: Pen) -> Loops:
         return []
     normal = half * np.array([-outward[1], outward[0]])
     far = at + half * outward
-    return region([_polygon([at - normal, far - normal, far + normal, at + normal])], "nonzero")
+    return [_polygon([at - normal, far - normal, far + normal, at + normal])]
 
 
-def _dot(at: Floats, pen: Pen) -> Loops:
+def _dot(at: Floats, along: Floats, pen: Pen) -> Loops:
     """A path of no length: its caps."""
     half = 0.5 * pen.width
     if pen.cap == "round":
         return _disk(at, half)
-    corners = [at + half * np.array(corner) for corner in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    return region([_polygon(corners)], "nonzero")
+    ahead, left = half * along, half * np.array([-along[1], along[0]])
+    return [_polygon([at - ahead - left, at + ahead - left, at + ahead + left, at - ahead + left])]
 
 
 def _disk(at: Floats, radius: float) -> Loops:
