@@ -60,7 +60,7 @@ def plain(phi: Array, step: float, reach: float) -> Array:
 
 
 def subcell(phi: Array, step: float, reach: float) -> Array:
-    """ENO of order 2 that ends at the zero set of φ₀, Runge-Kutta of order 3, each node's own steps."""
+    """ENO of order 2 that ends at the zero set of φ₀, Runge-Kutta of order 3, own steps a node."""
     sign = np.sign(phi)
     crossings = [_crossings(phi, axis) for axis in (0, 1)]
     nearest = np.minimum.reduce([gap for pair in crossings for gap in pair])

@@ -174,7 +174,7 @@ def test_parts_that_are_narrower_than_the_grid_are_told() -> None:
 
 
 def test_a_mask_may_come_near_the_border() -> None:
-    """Regression: the parabola through 1, 1, -1 fell below at the border, and masks were refused."""
+    """Regression: the parabola through 1, 1, -1 is below at the border, and masks were refused."""
     for margin in (1, 2, 3):
         mask = np.ones((16, 18))
         mask[margin:-margin, margin:-margin] = -1.0
