@@ -23,7 +23,8 @@ from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
 from splinesdf.meshes.lattice import DistanceGrid
 from splinesdf.offsets.offset import offset
-from splinesdf.rasters.atlas import Atlas, atlas
+from splinesdf.rasters.atlas import atlas
+from splinesdf.rasters.layout import Atlas
 from splinesdf.rasters.texture import Texture, texture
 from splinesdf.shapes.shape import Shape
 from splinesdf.splines.samples import from_level_set

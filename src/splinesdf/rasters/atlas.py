@@ -11,18 +11,14 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 
 from splinesdf.distance.exact import signed_distance_grid
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, positive, shown
-from splinesdf.ground.atomic import atomic_file
 from splinesdf.ground.paths import as_path
-from splinesdf.io.readers.fonts_glyphs import Kern, Lines
 from splinesdf.rasters.drawn import (
     Drawings,
     Drawn,
@@ -32,153 +28,14 @@ from splinesdf.rasters.drawn import (
     drawn_shapes,
     upright,
 )
-from splinesdf.rasters.images import MOST_TEXELS, Codes, checked_format, coded, write_image
-from splinesdf.rasters.layout import layout_text
+from splinesdf.rasters.images import MOST_TEXELS
+from splinesdf.rasters.layout import Atlas, AtlasGlyph, Cell
 from splinesdf.rasters.packing import packed
 from splinesdf.shapes.shape import Shape
 
 # Texels in an em. More: one glyph fills the largest picture; fewer: nothing can be seen of any.
 _LARGEST_EM = 8192.0
 _SMALLEST_EM = 1.0
-
-
-class Cell(NamedTuple):
-    """Where a glyph is, its texels from edge to edge.
-
-    Attributes
-    ----------
-    column, row : int
-        Of its upper left texel in the picture, whose upper row is row 0.
-    left, bottom : int
-        Of its lower left texel, counted from the glyph's origin, y pointing up: it covers
-        ``left`` to ``left + 1`` texels, that is ``left / size`` ems and on.
-    width, height : int
-    """
-
-    column: int
-    row: int
-    left: int
-    bottom: int
-    width: int
-    height: int
-
-
-@dataclass(frozen=True, eq=False)
-class AtlasGlyph:
-    """A glyph or a drawing of an atlas.
-
-    Attributes
-    ----------
-    name : str
-        The character, or the drawing's name.
-    advance : float
-        How far the next one is, in ems.
-    cell : Cell or None
-        None if there is nothing to see, as of a space.
-    """
-
-    name: str
-    advance: float
-    cell: Cell | None
-
-
-@dataclass(frozen=True, eq=False)
-class Atlas:
-    """Signed distances to many glyphs, side by side.
-
-    Attributes
-    ----------
-    values : ndarray, shape (height, width)
-        Distances in texels, negative inside, at the centers of texels; row 0 is the upper one.
-        Within a cell that to its glyph, between cells half the range.
-    size : float
-        Texels in an em.
-    range : float
-        The width of the distances that 8 or 16 bits span, in texels.
-    glyphs : tuple of AtlasGlyph
-        Characters in the order of their code points; drawings in that of their names.
-    characters : bool
-        Whether they are characters of a font.
-    lines : Lines
-        Where lines of writing are, in ems.
-    kerning : tuple of Kern
-        Pairs of characters that are nearer or farther than by their advance.
-    name : str
-    notes : tuple of str
-    """
-
-    values: Floats
-    size: float
-    range: float
-    glyphs: tuple[AtlasGlyph, ...]
-    characters: bool
-    lines: Lines
-    kerning: tuple[Kern, ...] = ()
-    name: str = ""
-    notes: tuple[str, ...] = ()
-
-    def pixels(self, bits: int = 8) -> Codes:
-        """The distances as whole numbers, as `Texture.pixels`."""
-        return coded(self.values, self.range, bits)
-
-    def layout(self, *, y_origin: Literal["bottom", "top"] = "bottom") -> str:
-        """Where each glyph is, as the JSON of msdf-atlas-gen.
-
-        Parameters
-        ----------
-        y_origin : {"bottom", "top"}
-            From where y is counted, in ems and in texels, as its ``-yorigin``.
-        """
-        return layout_text(self, y_origin)
-
-    def save(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        bits: int | None = None,
-        y_origin: Literal["bottom", "top"] = "bottom",
-    ) -> Path:
-        """Write the picture, and beside it the layout as ``.json``: both or neither.
-
-        Parameters
-        ----------
-        path : str or path
-            ``.png``, ``.tif``, ``.tiff`` or ``.npy``, as `Texture.save`.
-        bits : int, optional
-            As of `Texture.save`.
-        y_origin : {"bottom", "top"}
-            As of `layout`. The picture is the same.
-
-        Returns
-        -------
-        Path
-            Of the layout.
-
-        Raises
-        ------
-        InputError
-            If a file cannot be written, or the format has no such bits.
-        MissingExtraError
-            For PNG and TIFF without Pillow.
-        """
-        suffix, depth = checked_format(path, bits)
-        beside = as_path(path).with_suffix(".json")
-        text = self.layout(y_origin=y_origin)
-        said = {
-            "values": "1/2 - distance / range" if suffix == ".png" else "distance",
-            "range": self.range,
-            "unit": "texel",
-            "layout": beside.name,
-        }
-        with atomic_file(beside) as layout, atomic_file(path) as picture:
-            layout.write(text.encode("utf-8"))
-            # On the disk before the picture takes its name: what is left is to rename it.
-            layout.flush()
-            os.fsync(layout.fileno())
-            write_image(
-                picture, suffix, self.values, bits=depth, range=self.range, description=said
-            )
-        return beside
 
 
 def atlas(
