@@ -19,7 +19,10 @@ def opened(path: Path) -> tuple[np.ndarray, dict[str, Any]]:
     """Numbers from 0 to 1 and the layout of an atlas that was written."""
     with Image.open(path) as image:
         codes = np.asarray(image)
-    return codes / np.iinfo(codes.dtype).max, json.loads(path.with_suffix(".json").read_text())
+    # Older versions of Pillow hand 16 bits out as 32.
+    return codes / (255 if codes.dtype == np.uint8 else 65535), json.loads(
+        path.with_suffix(".json").read_text()
+    )
 
 
 def between(bounds: dict[str, float], across: np.ndarray, up: np.ndarray) -> tuple[Any, Any]:
