@@ -50,7 +50,7 @@ def contour() -> ss.Contour:
 # a few, each of which is tried. Everything else is none.
 KINDS: dict[str, str] = {
     **dict.fromkeys(("tolerance", "step", "max_distance", "min_side", "level", "beyond"), "number"),
-    **dict.fromkeys(("gap", "unit", "size"), "number"),
+    **dict.fromkeys(("gap", "unit", "size", "range", "em"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
     **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
@@ -67,13 +67,14 @@ KINDS: dict[str, str] = {
             *("contours", "contour", "arcs", "units", "milling", "direction", "smooth", "periodic"),
             *("y_down", "notes", "loops", "sections", "x", "y", "mesh", "made", "closed", "parent"),
             *("function", "starts", "split", "columns", "rows", "spline", "ax", "result", "filled"),
-            *("spline_or_mesh", "figure", "curve"),
+            *("spline_or_mesh", "figure", "curve", "source", "characters"),
         ),
         "other",
     ),
 }
 # Where a name means something else.
 SPECIAL = {
+    ("texture", "size"): "whole",
     ("Contour", "arcs"): "array",
     ("Grid.from_lines", "x"): "array",
     ("Grid.from_lines", "y"): "array",
@@ -124,6 +125,8 @@ GOOD: dict[str, Any] = {
     "distance": 0.5,
     "samples": 10,
     "max_steps": 3,
+    "size": 9,
+    "range": 1.0,
 }
 # Good values that differ from one function to another.
 GOOD_IN: dict[tuple[str, str], Any] = {
@@ -145,6 +148,7 @@ def good(where: str, name: str) -> Any:
         return GOOD_IN[where, name]
     made: dict[str, Callable[[], Any]] = {
         "shape": shape,
+        "source": shape,
         "mesh": lambda: Grid.uniform(UNIT, 3, 4),
         "contour": contour,
         "contours": lambda: [contour()],
@@ -152,6 +156,8 @@ def good(where: str, name: str) -> Any:
         "split": lambda: np.zeros(12, dtype=bool),
         "path": lambda: "out.svg",
     }
+    if where == "atlas" and name == "source":
+        return {"bar": shape()}
     if where == "Contour" and name == "weights":
         return contour().weights
     if where == "Quadtree.from_splits" and name == "shape":

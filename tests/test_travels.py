@@ -27,6 +27,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.fits.fit import fit_steps
 from splinesdf.io.enclosed import Sides
+from splinesdf.io.readers.fonts_glyphs import Kern
 from splinesdf.io.remeasured import Worst
 from splinesdf.paper.tables import Row
 from tests.named_shapes import gamma
@@ -136,6 +137,8 @@ def examples() -> dict[type, Any]:
         ss.project(shape, points),
         ss.signed_distance_grid(shape, 3, 4),
         result().spline.grid(3, 4),
+        ss.texture(shape, 5, range=0.1),
+        dataclasses.replace(ss.atlas({"limaçon": shape}, size=8), kerning=(Kern("A", "V", -0.1),)),
         ss.offset(shape, [-0.02, 0.1], tolerance=1e-4),
         ss.Milling(feed=100.0),
         shape.joints,

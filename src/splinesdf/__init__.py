@@ -23,12 +23,16 @@ from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
 from splinesdf.meshes.lattice import DistanceGrid
 from splinesdf.offsets.offset import offset
+from splinesdf.rasters.atlas import atlas
+from splinesdf.rasters.layout import Atlas
+from splinesdf.rasters.texture import Texture, texture
 from splinesdf.shapes.shape import Shape
 from splinesdf.splines.samples import from_level_set
 from splinesdf.splines.spline import SplineSDF, load
 
 __version__ = "0.1.0"
 __all__ = [
+    "Atlas",
     "Contour",
     "DistanceGrid",
     "FitResult",
@@ -40,8 +44,10 @@ __all__ = [
     "Shape",
     "SplineSDF",
     "SplineSDFError",
+    "Texture",
     "ToleranceNotReached",
     "as_arcs",
+    "atlas",
     "closest_point",
     "fit",
     "from_level_set",
@@ -52,5 +58,6 @@ __all__ = [
     "read",
     "signed_distance",
     "signed_distance_grid",
+    "texture",
     "write",
 ]

@@ -28,6 +28,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
         *("part", "-d", "1.2345678", "-d", "-1000", "-o", "é.svg"),
         *("--check", "--tolerance", "0.0123456"),
     ),
+    "texture": ("é€.csv", "-o", "é.png", "--range", "0.1234567"),
+    "atlas": ("drawings é", "-o", "é.png", "--size", "12.345678"),
     "paper": ("--tables",),
     "demo": (
         "-o",
@@ -45,6 +47,8 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("prepared")
     (path / "é€.csv").write_text("0,0\n1,0\n1,1\n0,1\n")
     (path / "points.csv").write_text("0.5,0.25\n2,0.5\n")
+    (path / "drawings é").mkdir()
+    (path / "drawings é" / "ö€.svg").write_text('<svg><path d="M0 0h5v5H0z"/></svg>')
     ss.fit(ss.read(path / "é€.csv"), tolerance=0.05).spline.save(path / "fit.npz")
     return path
 
@@ -53,7 +57,7 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def folder(prepared: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     for file in prepared.iterdir():
-        shutil.copy(file, tmp_path)
+        (shutil.copytree if file.is_dir() else shutil.copy)(file, tmp_path / file.name)
     return tmp_path
 
 

@@ -15,12 +15,14 @@ except ImportError:
     print('splinesdf: the command line needs: python -m pip install "splinesdf[cli]"')
     raise SystemExit(2) from None
 
+from splinesdf.cli.atlas import atlas
 from splinesdf.cli.demo import demo
 from splinesdf.cli.fit import fit
 from splinesdf.cli.info import info
 from splinesdf.cli.offset import offset
 from splinesdf.cli.paper import paper
 from splinesdf.cli.query import query
+from splinesdf.cli.texture import texture
 
 
 def main() -> None:
@@ -63,5 +65,5 @@ def commands() -> None:
     """
 
 
-for _command in (fit, offset, query, paper, info, demo):
+for _command in (fit, offset, query, texture, atlas, paper, info, demo):
     commands.add_command(_command)

@@ -81,7 +81,7 @@ def reading_options(command: Command) -> Command:
         if reading["columns"]:
             columns = reading["columns"]
             reading["columns"] = tuple(int(one) if one.isdigit() else one for one in columns)
-        reading["location"] = dict(map(_axis, reading["location"])) or None
+        reading["location"] = dict(map(axis_of, reading["location"])) or None
         command(reading=reading, **given)
 
     bundled: Command = functools.wraps(command)(read_as)
@@ -90,7 +90,8 @@ def reading_options(command: Command) -> Command:
     return bundled
 
 
-def _axis(text: str) -> tuple[str, float]:
+def axis_of(text: str) -> tuple[str, float]:
+    """An axis of a variable font and where on it, or an `InputError`."""
     tag, sign, value = text.partition("=")
     try:
         return tag, float(value if sign else "")

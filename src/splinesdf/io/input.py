@@ -95,14 +95,14 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
         If the file is missing, cannot be read, or is not what its extension says.
     """
     asked = checked_options(options)
-    with _named(path) as file:
+    with named(path) as file:
         suffix = file.suffix.lower()
         if suffix not in READERS:
             raise InputError(
                 f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
             )
         check_used(asked, USED, suffix)
-        return READERS[suffix](Source(file, _content(file), file.stem, suffix), asked)
+        return READERS[suffix](Source(file, content_of(file), file.stem, suffix), asked)
 
 
 def read_points(path: str | os.PathLike[str]) -> Floats:
@@ -118,19 +118,19 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
     InputError
         If the file cannot be read or a line is not two numbers.
     """
-    with _named(path) as file:
+    with named(path) as file:
         return np.concatenate(
             [
                 points
                 for _, points in read_blocks(
-                    Source(file, _content(file), file.stem, file.suffix).text(), finite=False
+                    Source(file, content_of(file), file.stem, file.suffix).text(), finite=False
                 )
             ]
         )
 
 
 @contextmanager
-def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
+def named(path: str | os.PathLike[str]) -> Iterator[Path]:
     """The path, and the file's name in front of every error."""
     file = as_path(path)
     try:
@@ -148,7 +148,8 @@ def _named(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise type(error)(f"{name if name.isprintable() else repr(name)}: {words}") from error
 
 
-def _content(file: Path) -> bytes:
+def content_of(file: Path) -> bytes:
+    """All of a file, or an `InputError`."""
     try:
         if file.exists() and not file.is_file():
             # Reading from a pipe or a device might never end.

@@ -50,8 +50,8 @@ def font_shape(source: Source, options: Options) -> Shape:
         raise InputError(
             f"expected a text of up to {_MOST_CHARACTERS:,} characters, got {len(options.text):,}"
         )
-    with _readable():
-        font = _opened(source.content)
+    with readable():
+        font = opened(source.content)
         loops, notes = _loops(font, source.content, options)
     if not loops:
         raise InputError(f"expected a text with something to see, got {options.text[:40]!r}")
@@ -59,7 +59,7 @@ def font_shape(source: Source, options: Options) -> Shape:
 
 
 @contextmanager
-def _readable() -> Iterator[None]:
+def readable() -> Iterator[None]:
     """An `InputError` for whatever a damaged font makes its reader run into."""
     try:
         yield
@@ -74,10 +74,10 @@ def _readable() -> Iterator[None]:
 def _loops(font: Any, content: bytes, options: Options) -> tuple[Loops, tuple[str, ...]]:
     """The glyphs of the text, inside on the left, and what is to be said."""
     assert options.text is not None
-    location = _location(font, options.location)
+    location = checked_location(font, options.location)
     _check_characters(font, options.text)
     placed, notes = _placed(font, content, options.text, location)
-    _check_colors(font, {glyph.name for glyph in placed})
+    check_colors(font, {glyph.name for glyph in placed})
     glyphs = font.getGlyphSet(location=location)
     units = float(font["head"].unitsPerEm)
     scale = 1.0 if options.size is None else options.size / units
@@ -86,7 +86,7 @@ def _loops(font: Any, content: bytes, options: Options) -> tuple[Loops, tuple[st
     pieces = 0
     for name, x, y in placed:
         if name not in regions:
-            regions[name] = region(_outline(glyphs, name), options.fill or "nonzero")
+            regions[name] = region(outline(glyphs, name), options.fill or "nonzero")
         shift = np.array([x, y])
         loops += [[scale * (piece + shift) for piece in loop] for loop in regions[name]]
         pieces += sum(map(len, regions[name]))
@@ -94,7 +94,8 @@ def _loops(font: Any, content: bytes, options: Options) -> tuple[Loops, tuple[st
     return loops, notes
 
 
-def _opened(content: bytes) -> Any:
+def opened(content: bytes) -> Any:
+    """The font, as fontTools reads it, or an `InputError`."""
     try:
         from fontTools.ttLib import TTFont, TTLibError
     except ImportError as error:
@@ -119,7 +120,7 @@ def _opened(content: bytes) -> Any:
     return font
 
 
-def _location(font: Any, asked: Mapping[str, float] | None) -> dict[str, float]:
+def checked_location(font: Any, asked: Mapping[str, float] | None) -> dict[str, float]:
     """The location of a variable font, or an `InputError`."""
     if not asked:
         return {}
@@ -141,7 +142,7 @@ def _check_characters(font: Any, text: str) -> None:
         raise InputError(f"the font has no glyph for {', '.join(map(repr, missing[:5]))}")
 
 
-def _check_colors(font: Any, names: set[str]) -> None:
+def check_colors(font: Any, names: set[str]) -> None:
     """Refuse glyphs that are drawn in colors: their outline may be anything."""
     if "COLR" not in font:
         return
@@ -178,7 +179,7 @@ def _placed(
         note = "no kerning or ligatures: glyphs are placed by their widths, as uharfbuzz is missing"
         return placed, (note,) if len(text) > 1 else ()
     order = font.getGlyphOrder()
-    shaper = uharfbuzz.Font(uharfbuzz.Face(_unpacked(font, content)))
+    shaper = uharfbuzz.Font(uharfbuzz.Face(unpacked(font, content)))
     if location:
         shaper.set_variations(location)
     placed = []
@@ -194,7 +195,7 @@ def _placed(
     return placed, ()
 
 
-def _unpacked(font: Any, content: bytes) -> bytes:
+def unpacked(font: Any, content: bytes) -> bytes:
     """The font as HarfBuzz reads it, which knows no packed ones."""
     if content[:4] not in (b"wOFF", b"wOF2"):
         return content
@@ -205,7 +206,7 @@ def _unpacked(font: Any, content: bytes) -> bytes:
     return plain.getvalue()
 
 
-def _outline(glyphs: Any, name: str) -> Loops:
+def outline(glyphs: Any, name: str) -> Loops:
     """A glyph's contours, components and implied points resolved."""
     from fontTools.pens.basePen import BasePen
 

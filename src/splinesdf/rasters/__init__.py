@@ -1,0 +1,1 @@
+"""The distance as pictures for graphics: one shape as a texture, many as an atlas."""
