@@ -227,3 +227,11 @@ def test_random_trees_come_back(tmp_path: Path) -> None:
         assert (loaded.domain, loaded.shape) == (mesh.domain, mesh.shape)
         for name in ("level", "index", "child"):
             assert np.array_equal(getattr(loaded, name), getattr(mesh, name))
+
+
+@pytest.mark.parametrize("name", ["fit", "fit.vtu", "fit.png", "fit.npz.bak"])
+def test_a_name_of_another_kind_is_refused(name: str, tmp_path: Path) -> None:
+    spline = SplineSDF(Grid.uniform(UNIT, 1, 1), np.zeros((1, 8)))
+    with pytest.raises(ss.InputError, match=r"ending in \.npz or \.json"):
+        spline.save(tmp_path / name)
+    assert not list(tmp_path.iterdir())

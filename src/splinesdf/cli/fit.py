@@ -21,8 +21,9 @@ from splinesdf.cli.shapes import (
     tolerance_option,
 )
 from splinesdf.fits.fit import FitResult, fit_steps, require_reached
-from splinesdf.io.fields import FIELDS, SAVED
+from splinesdf.io.fields import FIELDS
 from splinesdf.spaces.elements import find_element
+from splinesdf.splines.archive import SAVED
 
 
 @click.command()

@@ -10,10 +10,10 @@ from splinesdf.ground.atomic import atomic_file
 from splinesdf.ground.paths import as_path
 from splinesdf.io.writers import WRITERS
 from splinesdf.io.writers.vtu import vtu_bytes
+from splinesdf.splines.archive import SAVED
 from splinesdf.splines.spline import SplineSDF
 
 FIELDS = frozenset({".vtu"})
-SAVED = frozenset({".npz", ".json"})
 
 
 def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: dict[str, Any]) -> None:

@@ -42,6 +42,7 @@ from splinesdf.spaces.space import space_on
 from splinesdf.splines.json_form import from_plain, read_json, to_plain, write_json
 from splinesdf.splines.provenance import Provenance
 
+SAVED = (".npz", ".json")
 # Raised when an older reader would misunderstand a file.
 _VERSION = 3
 _COMMON = {"format", "version", "ordinates", "about"}
@@ -69,8 +70,14 @@ def write_archive(path: str | os.PathLike[str], archive: Archive) -> None:
     Raises
     ------
     InputError
-        If the file cannot be written, or could not be read again: the same checks are made.
+        If the name ends otherwise than in ``.npz`` or ``.json``, the file cannot be written, or
+        could not be read again: the same checks are made.
     """
+    if as_path(path).suffix.lower() not in SAVED:
+        raise InputError(
+            f"expected a file name ending in {' or '.join(SAVED)} for a saved fit, got "
+            f"{os.fspath(path)!r:.200}: splinesdf.write has other formats"
+        )
     fields = _checked_fields(archive)
     write_fields = write_json if _is_json(path) else write_npz
     with atomic_file(path) as file:

@@ -299,7 +299,8 @@ class SplineSDF:
         Raises
         ------
         InputError
-            If the file cannot be written, or a number of the spline is not finite.
+            If the name ends otherwise, the file cannot be written, or a number of the spline is
+            not finite.
         """
         write_archive(path, self._archive)
 
