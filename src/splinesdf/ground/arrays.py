@@ -109,6 +109,19 @@ def positive(value: float, name: str) -> float:
     return number
 
 
+def as_page(value: Any) -> tuple[float, float, float, float] | None:
+    """A page as xmin, ymin, xmax, ymax, or None if none is given; else an `InputError`."""
+    if value is None:
+        return None
+    sides = as_floats(value, "page")
+    if sides.shape != (4,):
+        raise InputError(f"expected a page of xmin, ymin, xmax, ymax, got {shown(value)}")
+    xmin, ymin, xmax, ymax = (finite(side, "page") for side in sides.tolist())
+    if not (xmin < xmax and ymin < ymax):
+        raise InputError(f"expected a page with an extent, xmin < xmax, got {shown(value)}")
+    return xmin, ymin, xmax, ymax
+
+
 def whole(value: Any, name: str, *, least: int, most: int | None = None) -> int:
     """The value as a whole number within bounds, or an `InputError` that names it.
 

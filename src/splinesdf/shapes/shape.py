@@ -20,7 +20,7 @@ from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
+from splinesdf.ground.arrays import Floats, Ints, as_page, as_points, finite, positive, whole
 from splinesdf.shapes.boundary import filled_boundary, kept_loops, touching_of
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
@@ -32,6 +32,7 @@ from splinesdf.shapes.sources.sections import compile_sections
 from splinesdf.shapes.sources.svg_path import parse_path
 
 Fill = Literal["nonzero", "evenodd"]
+Page = tuple[float, float, float, float]
 
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
@@ -63,6 +64,9 @@ class Shape:
         What was left out or mended, one line each.
     unit : float or None
         How many millimeters one unit of the coordinates is, if the source says.
+    page : (xmin, ymin, xmax, ymax) or None
+        The page of a drawing, in the coordinates' unit, if the source has one. `write` mirrors y
+        about its height.
     """
 
     control: Floats
@@ -73,8 +77,10 @@ class Shape:
     name: str = ""
     notes: tuple[str, ...] = field(default=())
     unit: float | None = None
+    page: Page | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "page", as_page(self.page))
         object.__setattr__(self, "control", as_points(self.control))
         if self.unit is not None:
             object.__setattr__(self, "unit", positive(self.unit, "unit"))
@@ -91,6 +97,7 @@ class Shape:
         notes: tuple[str, ...] = (),
         once: bool | None = None,
         unit: float | None = None,
+        page: Page | None = None,
     ) -> Shape:
         """Assemble a shape from loops of Bézier pieces of any degree.
 
@@ -108,6 +115,8 @@ class Shape:
             twice. True unless ``fill`` is given, which then decides.
         unit : float, optional
             Millimeters that one unit of the coordinates is.
+        page : (xmin, ymin, xmax, ymax), optional
+            The page of a drawing.
 
         Raises
         ------
@@ -133,6 +142,7 @@ class Shape:
             name=name,
             notes=(*notes, *lost),
             unit=unit,
+            page=page,
         )
 
     @classmethod
@@ -264,7 +274,9 @@ class Shape:
         given = list(contours)
         y_down = any(getattr(contour, "y_down", False) for contour in given)
         loops, unit = contour_loops(given), getattr(given[0], "unit", None)
-        return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit)
+        pages = {contour.page for contour in given}
+        page = pages.pop() if len(pages) == 1 else None
+        return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit, page=page)
 
     @classmethod
     def from_shapely(cls, geometry: object, *, name: str = "") -> Shape:

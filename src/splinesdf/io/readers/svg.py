@@ -21,7 +21,7 @@ from splinesdf.io.readers.svg_document import parse_document
 from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_regions import clips_of, filled, is_flat
 from splinesdf.io.readers.svg_strokes import stroked
-from splinesdf.io.readers.svg_units import unit_length, unit_note
+from splinesdf.io.readers.svg_units import page_of, unit_length, unit_note
 from splinesdf.io.readers.svg_walk import Document, Found
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.repeats import drawn_once, first_of_each, repeats_note
@@ -85,6 +85,7 @@ def svg_shape(source: Source, options: Options) -> Shape:
         notes=notes,
         once=False,
         unit=unit_length(root),
+        page=page_of(root),
     )
 
 
