@@ -71,3 +71,5 @@ class Drawn:
     # not stretch its stroke.
     own: Loops | None
     closed: Sequence[bool]
+    name: str = ""  # its id or its label, if it has one
+    number: int = 0  # its place among all that are read

@@ -305,7 +305,8 @@ def _drawn(
             found.left_out[f"{tag} without area"] += 1
         return None
     document.count(pieces=sum(map(len, loops)), cuts=len(context.clips))
-    return Drawn(tag, loops, context, label, shape.loops, shape.closed)
+    name = element.get("id", "") or element.get(_LABEL, "")
+    return Drawn(tag, loops, context, label, shape.loops, shape.closed, name)
 
 
 def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:
