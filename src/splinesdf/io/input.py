@@ -85,7 +85,8 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     Shape
         Its ``notes`` name what the file holds beside it, such as texts, images or open paths, what
         is drawn again, and how long a drawing says that one unit is, if that is neither a
-        millimeter nor an inch; ``unit`` is that length in millimeters.
+        millimeter nor an inch; ``unit`` is that length in millimeters, ``page`` the viewBox of a
+        drawing, or its width and height.
 
     Raises
     ------

@@ -83,12 +83,11 @@ def separated(reading: Reading) -> list[Shape]:
 def _shape(reading: Reading, loops: Loops, rule: str) -> Shape | None:
     """The shape of an element, None if it fills nothing."""
     try:
-        if not region(loops, rule):
-            return None
-        return reading.shape(loops, rule, close=True, once=False)
+        shape = reading.shape(loops, rule, close=True, once=False)
+        return shape if len(shape.boundary.start) else None
     except TooMuch:
         raise
-    except InputError:  # too small for its place, as a shape of its own
+    except InputError:  # nothing is filled, or it is too small for its place by itself
         return None
 
 
@@ -184,6 +183,9 @@ def _near(loops: Loops) -> Iterator[tuple[int, list[int]]]:
 
 def _run_alike(loops: Loops, one: int, other: int, ways: dict[int, int]) -> bool:
     """Whether two outlines run the same way around, all of either, so that nothing is canceled."""
+    areas = moments_of([loops[one], loops[other]])[:, 0]
+    if areas[0] * areas[1] <= 0.0:
+        return False
     for k in (one, other):
         if k not in ways:
             ways[k] = _way_around(loops[k])
@@ -192,11 +194,23 @@ def _run_alike(loops: Loops, one: int, other: int, ways: dict[int, int]) -> bool
 
 def _way_around(loop: list[Floats]) -> int:
     """1 if x turns into y all around an outline, -1 if y into x, 0 if not all of it runs so."""
-    filled = region([loop], "nonzero")
-    if not filled:
-        return 0
-    area, inside = float(moments_of([loop])[0, 0]), float(moments_of(filled)[:, 0].sum())
+    area = float(moments_of([loop])[0, 0])
+    if _is_convex(loop):
+        return int(np.sign(area))
+    inside = float(moments_of(region([loop], "nonzero"))[:, 0].sum())
     return int(np.sign(area)) if abs(abs(area) - inside) <= _ONE_WAY * inside else 0
+
+
+def _is_convex(loop: list[Floats]) -> bool:
+    """Whether control points run once around a convex polygon, which curves then do, too."""
+    points = np.concatenate([piece[:-1] for piece in loop])
+    ways = np.roll(points, -1, axis=0) - points
+    ways = ways[np.any(ways != 0.0, axis=1)]
+    after = np.roll(ways, -1, axis=0)
+    cross = ways[:, 0] * after[:, 1] - ways[:, 1] * after[:, 0]
+    turn = np.arctan2(cross, np.sum(ways * after, axis=1))
+    one_way = bool(np.all(turn >= 0.0) or np.all(turn <= 0.0))
+    return one_way and abs(abs(float(turn.sum())) - 2.0 * np.pi) < 1.0
 
 
 def _overlapping(loops: Loops, k: int, others: Sequence[int]) -> list[int]:
