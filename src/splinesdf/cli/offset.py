@@ -125,8 +125,9 @@ def offset(
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
     off = report.print_offsets(source, contours, distances, tolerance)
     report.print_written(*files)
-    for suffix in dict.fromkeys(map(_suffix, files)):
-        _say_units(source, suffix, flags["units"])
+    notes = [_about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
+    for note in filter(None, dict.fromkeys(notes)):
+        click.echo(f"note: {note}", err=True)
     passed = _keeps(off, tolerance)
     if flags["check"]:
         # At the step after the last nothing is to be left.
@@ -250,19 +251,19 @@ def _keeps(off: float, tolerance: float) -> bool:
     return off <= tolerance
 
 
-def _say_units(source: ss.Shape, suffix: str, units: str | None) -> None:
+def _about_units(source: ss.Shape, suffix: str, units: str | None) -> str | None:
     """Say by how much the numbers of the file are larger, or that their unit is not known."""
     if suffix not in Y_UP:
-        return
-    if source.unit is None:
-        if units is not None or suffix != ".dxf":
-            click.echo(
-                f"note: {source.name} does not say its unit: its numbers are written as they are, "
-                f"in {units or 'mm'}",
-                err=True,
-            )
-    elif (by := factor(suffix, source.unit, units)) != 1.0:
-        click.echo(f"note: converted to {units or 'mm'}: {by:.9g} a unit", err=True)
+        return None
+    if source.unit is not None:
+        by = factor(suffix, source.unit, units)
+        return None if by == 1.0 else f"converted to {units or 'mm'}: {by:.9g} a unit"
+    if units is None and suffix == ".dxf":
+        return None
+    return (
+        f"{source.name} does not say its unit: its numbers are written as they are, in "
+        f"{units or 'mm'}"
+    )
 
 
 def _check(

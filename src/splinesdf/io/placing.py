@@ -118,10 +118,12 @@ def _mapped(
         if about is not None:
             contour, shift = mirrored(contour, y0), np.array([x0, 0.0])
         page = contour.page
-        if page is not None:
-            corners = by * (np.reshape(page, (2, 2)) - shift)
-            page = tuple(corners.ravel().tolist())
-        return replace(contour, arcs=by * (contour.arcs - shift), page=page)
+        with np.errstate(over="ignore"):  # what overflows is refused by the contour
+            arcs = by * (contour.arcs - shift)
+            if page is not None:
+                corners = by * (np.reshape(page, (2, 2)) - shift)
+                page = tuple(corners.ravel().tolist())
+        return replace(contour, arcs=arcs, page=page)
 
     return changed(contours, moved)
 

@@ -22,8 +22,8 @@ _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
 _FLAT = 1e-9
 # Colors of layers by the AutoCAD color index, one distance after the other: each stands out from
 # a white background by a contrast of 3 at least, and from AutoCAD's dark one. More of them would
-# look alike. Red, ochre, magenta, olive, pink; blue, green, violet, teal, lime.
-_OUTSIDE, _INSIDE = (1, 42, 6, 54, 230), (150, 92, 200, 134, 72)
+# look alike. Red, ochre, pink, olive, magenta; blue, green, teal, lime, violet.
+_OUTSIDE, _INSIDE = (1, 42, 230, 54, 6), (150, 92, 134, 72, 200)
 _SHAPE = 7  # black or white, whatever the background is not
 
 
