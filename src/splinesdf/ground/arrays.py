@@ -14,6 +14,7 @@ from splinesdf.errors import InputError
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+Page = tuple[float, float, float, float]  # xmin, ymin, xmax, ymax
 
 # Coordinates up to this, and sizes down to its inverse: beyond, the products of four lengths that
 # the distance needs overflow or vanish, without a word.
@@ -109,7 +110,7 @@ def positive(value: float, name: str) -> float:
     return number
 
 
-def as_page(value: Any) -> tuple[float, float, float, float] | None:
+def as_page(value: Any) -> Page | None:
     """A page as xmin, ymin, xmax, ymax, or None if none is given; else an `InputError`."""
     if value is None:
         return None

@@ -115,14 +115,16 @@ def _mapped(
 
     def moved(contour: Contour) -> Contour:
         shift = np.array([x0, y0])
+        page, contour = contour.page, replace(contour, page=None)
         if about is not None:
             contour, shift = mirrored(contour, y0), np.array([x0, 0.0])
-        page = contour.page
+            page = None if page is None else (page[0], y0 - page[3], page[2], y0 - page[1])
         with np.errstate(over="ignore"):  # what overflows is refused by the contour
             arcs = by * (contour.arcs - shift)
             if page is not None:
                 corners = by * (np.reshape(page, (2, 2)) - shift)
-                page = tuple(corners.ravel().tolist())
+                seen = np.isfinite(corners).all() and (corners[0] < corners[1]).all()
+                page = tuple(corners.ravel().tolist()) if seen else None
         return replace(contour, arcs=arcs, page=page)
 
     return changed(contours, moved)

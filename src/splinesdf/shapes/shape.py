@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, SupportsIndex
+from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +20,9 @@ from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, Ints, as_page, as_points, finite, positive, whole
+from splinesdf.ground.arrays import Floats, Ints, Page, as_page, as_points, finite, positive, whole
 from splinesdf.shapes.boundary import filled_boundary, kept_loops, touching_of
+from splinesdf.shapes.loops import Fill, fill_rule
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
 from splinesdf.shapes.sources.conics import contour_loops
@@ -30,9 +31,6 @@ from splinesdf.shapes.sources.geojson import polygons_of
 from splinesdf.shapes.sources.nurbs import nurbs_pieces
 from splinesdf.shapes.sources.sections import compile_sections
 from splinesdf.shapes.sources.svg_path import parse_path
-
-Fill = Literal["nonzero", "evenodd"]
-Page = tuple[float, float, float, float]
 
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
@@ -126,7 +124,7 @@ class Shape:
             If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
             the coordinates, nothing is left, or ``fill`` is unknown.
         """
-        rule = _fill_rule("nonzero" if fill is None else fill)
+        rule = fill_rule("nonzero" if fill is None else fill)
         closed, lost = kept_loops(loops, close=close)
         # By itself, a contour fills the same under nonzero however often it is traced.
         if (fill is None if once is None else once) and (len(closed) > 1 or rule == "evenodd"):
@@ -274,8 +272,7 @@ class Shape:
         given = list(contours)
         y_down = any(getattr(contour, "y_down", False) for contour in given)
         loops, unit = contour_loops(given), getattr(given[0], "unit", None)
-        pages = {contour.page for contour in given}
-        page = pages.pop() if len(pages) == 1 else None
+        page = getattr(given[0], "page", None)
         return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit, page=page)
 
     @classmethod
@@ -401,11 +398,3 @@ class Shape:
         """
         count = whole(count, "count", least=1, most=_MOST_SAMPLES)
         return sampled_loops(self.control, self.starts, self.loops, count)
-
-
-def _fill_rule(fill: str) -> Fill:
-    if fill == "nonzero":
-        return "nonzero"
-    if fill == "evenodd":
-        return "evenodd"
-    raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r}")

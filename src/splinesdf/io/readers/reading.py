@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Page
 from splinesdf.shapes.region import Loops, united_regions
-from splinesdf.shapes.shape import Page, Shape
+from splinesdf.shapes.shape import Shape
 
 
 class Part(NamedTuple):
