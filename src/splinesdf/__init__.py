@@ -18,7 +18,7 @@ from splinesdf.errors import (
 )
 from splinesdf.fits.fit import FitResult, fit
 from splinesdf.fits.interpolation import interpolate
-from splinesdf.io.input import read
+from splinesdf.io.input import read, read_all
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
 from splinesdf.meshes.lattice import DistanceGrid
@@ -56,6 +56,7 @@ __all__ = [
     "offset",
     "project",
     "read",
+    "read_all",
     "signed_distance",
     "signed_distance_grid",
     "texture",

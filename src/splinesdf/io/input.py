@@ -15,6 +15,8 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.ground.paths import as_path, shortened
 from splinesdf.io.readers import READERS, USED
 from splinesdf.io.readers.points import read_blocks
+from splinesdf.io.readers.reading import Reading, united
+from splinesdf.io.readers.separate import separated
 from splinesdf.io.readers.source import (
     ReadOptions,
     Source,
@@ -84,7 +86,8 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     Shape
         Its ``notes`` name what the file holds beside it, such as texts, images or open paths, what
         is drawn again, and how long a drawing says that one unit is, if that is neither a
-        millimeter nor an inch; ``unit`` is that length in millimeters.
+        millimeter nor an inch; ``unit`` is that length in millimeters, ``page`` the viewBox of a
+        drawing, or its width and height.
 
     Raises
     ------
@@ -94,6 +97,58 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     InputError
         If the file is missing, cannot be read, or is not what its extension says.
     """
+    with _parts(path, options) as parts:
+        return united(parts)
+
+
+@read_options
+def read_all(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> list[Shape]:
+    """Read the elements of a file, one shape each; together they fill what `read` reads.
+
+    An element is
+
+    - of a drawing (SVG) what is drawn: fill and stroke together, cut to its clips;
+    - of GeoJSON a feature, or a geometry that is in none, of WKT a geometry;
+    - of JSON a loop, of a table or of airfoils a polygon, of a font a glyph that is placed;
+    - of DXF an outermost outline with what lies in it: joined edges have no other name.
+
+    Outlines of one file that are filled together may be holes in each other: closed lines of a
+    drawing, loops, polygons of a table. Those that overlap are one shape where they could cancel
+    each other: under even-odd, and under nonzero unless they run the same way around.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Other Parameters
+    ----------------
+    fill, close, stroke, ignore, layers, ids, stroke_color, gap, columns, text, size, location
+        As of `read`.
+
+    Returns
+    -------
+    list of Shape
+        In the file's order. Each ``name`` is there once: an element's id, else its label, else its
+        kind and number; of a glyph its characters. The ``notes`` are those of the file, then the
+        elements that the shape holds beside its own, then the elements that fill nothing by
+        themselves: those in no shape. So every element is a shape or is counted there.
+
+    Raises
+    ------
+    OpenContourError, InputError
+        As of `read`, and if no element fills anything.
+
+    Examples
+    --------
+    >>> names = [shape.name for shape in splinesdf.read_all("letters.svg")]  # doctest: +SKIP
+    """
+    with _parts(path, options) as parts:
+        return separated(parts)
+
+
+@contextmanager
+def _parts(path: str | os.PathLike[str], options: ReadOptions) -> Iterator[Reading]:
+    """What is in a file, and the file's name in front of every error, later ones too."""
     asked = checked_options(options)
     with named(path) as file:
         suffix = file.suffix.lower()
@@ -102,7 +157,7 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
                 f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
             )
         check_used(asked, USED, suffix)
-        return READERS[suffix](Source(file, content_of(file), file.stem, suffix), asked)
+        yield READERS[suffix](Source(file, content_of(file), file.stem, suffix), asked)
 
 
 def read_points(path: str | os.PathLike[str]) -> Floats:

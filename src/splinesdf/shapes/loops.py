@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf.errors import InputError, OpenContourError
 from splinesdf.ground.arrays import LARGEST, NOTHING, Floats, as_points, largest_coordinate
+
+Fill = Literal["nonzero", "evenodd"]
 
 # Neighbouring pieces meet to rounding; a gap up to this share of the shape's largest
 # coordinate is closed by moving an end point by that much. Larger: real gaps would vanish unseen.
@@ -28,6 +31,15 @@ MOST_PIECES = 1_000_000
 # its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
 # curves that run to and fro along a line keep arcs that only rounding gives a side.
 _STRAIGHT = 4 * 2.220446049250313e-16
+
+
+def fill_rule(fill: str) -> Fill:
+    """The fill rule, or an `InputError`."""
+    if fill == "nonzero":
+        return "nonzero"
+    if fill == "evenodd":
+        return "evenodd"
+    raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r}")
 
 
 class TooMuch(InputError):

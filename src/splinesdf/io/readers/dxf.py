@@ -19,11 +19,11 @@ import numpy as np
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
+from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.joining import are_open, joined
 from splinesdf.shapes.loops import check_count, extent
 from splinesdf.shapes.region import Loops
-from splinesdf.shapes.shape import Shape
 
 # Millimeters of $INSUNITS, by its numbers.
 _UNITS = {
@@ -45,8 +45,8 @@ class _Edge(NamedTuple):
     pieces: list[Floats]
 
 
-def dxf_shape(source: Source, options: Options) -> Shape:
-    """The region inside an odd number of the closed outlines of the model space."""
+def dxf_reading(source: Source, options: Options) -> Reading:
+    """The closed outlines of the model space; what is inside an odd number of them is filled."""
     if not source.content.strip():
         raise InputError("the file is empty")
     document, damaged = _document(source)
@@ -70,13 +70,15 @@ def dxf_shape(source: Source, options: Options) -> Shape:
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)))
     if unit is None:
         notes.append("the file does not say its unit ($INSUNITS)")
-    return Shape.from_pieces(
-        loops,
-        fill=options.fill or "evenodd",
+    return Reading(
+        source.stem,
+        [f"outline {k + 1}" for k in range(len(loops))],
+        [],
+        [Part(k, [loop]) for k, loop in enumerate(loops)],
+        rule=options.fill or "evenodd",
         close=options.close,
-        name=source.stem,
-        notes=tuple(notes),
         once=options.fill is None,
+        notes=tuple(notes),
         unit=unit,
     )
 

@@ -313,7 +313,8 @@ def _drawn(
         return None
     document.count(pieces=sum(map(len, loops)), cuts=len(context.clips))
     said = element.get("pathLength", "")
-    return Drawn(tag, loops, context, label, shape.loops, shape.closed, said)
+    name = element.get("id", "") or element.get(_LABEL, "")
+    return Drawn(tag, loops, context, label, shape.loops, shape.closed, said, name)
 
 
 def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:
