@@ -21,6 +21,7 @@ from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
+from splinesdf.ground.limits import Limits, limits_in_use, using
 from splinesdf.shapes.boundary import filled_boundary, kept_loops, touching_of
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
@@ -63,6 +64,9 @@ class Shape:
         What was left out or mended, one line each.
     unit : float or None
         How many millimeters one unit of the coordinates is, if the source says.
+    limits : Limits
+        How many crossings its contours may have, which are found when first a distance is asked
+        for: those that it was read with. ``dataclasses.replace(shape, limits=...)`` has others.
     """
 
     control: Floats
@@ -73,6 +77,7 @@ class Shape:
     name: str = ""
     notes: tuple[str, ...] = field(default=())
     unit: float | None = None
+    limits: Limits = field(default_factory=limits_in_use, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "control", as_points(self.control))
@@ -330,10 +335,12 @@ class Shape:
         Raises
         ------
         InputError
-            If nothing is filled: every contour is traced to and fro, or twice under "evenodd".
+            If nothing is filled: every contour is traced to and fro, or twice under "evenodd";
+            or if the contours cross more often than ``limits`` says.
         """
         largest = float(np.abs(self.control).max())
-        found = filled_boundary(self.arclets, 0 if self.fill == "evenodd" else 1, largest)
+        with using(self.limits):
+            found = filled_boundary(self.arclets, 0 if self.fill == "evenodd" else 1, largest)
         if found is None:
             other = "nonzero" if self.fill == "evenodd" else "evenodd"
             raise InputError(

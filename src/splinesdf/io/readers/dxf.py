@@ -18,6 +18,7 @@ import numpy as np
 
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.limits import check_limit
 from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
 from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.joining import are_open, joined
@@ -30,9 +31,6 @@ _UNITS = {
     1: 25.4, 2: 304.8, 3: 1609344.0, 4: 1.0, 5: 10.0, 6: 1000.0, 7: 1e6, 8: 25.4e-6, 9: 25.4e-3,
     10: 914.4, 11: 1e-7, 12: 1e-6, 13: 1e-3, 14: 100.0, 15: 1e4, 16: 1e5,
 }  # fmt: skip
-# Entities of a drawing, those in blocks as often as they are inserted. More: a few lines of
-# INSERT within INSERT take all time and memory.
-_MOST_ENTITIES = 1_000_000
 # Ends of edges drawn twice agree to this share of the drawing's size: it is what printed digits
 # leave. Larger: edges side by side count once; smaller: edges drawn twice do not.
 _SAME = 1e-9
@@ -128,7 +126,7 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
     _check_inserts(document)
     count = 0
     for number, entity in enumerate(_resolved(disassemble, document)):
-        _check_entities(number)
+        _check_entities(number + 1)
         kind, layer = entity.dxftype(), entity.dxf.get("layer", "0").lower()
         if layers is not None and layer not in layers:
             left_out["entities on other layers"] += 1
@@ -150,8 +148,7 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
 
 
 def _check_entities(count: int) -> None:
-    if count >= _MOST_ENTITIES:
-        raise InputError(f"expected at most {_MOST_ENTITIES:,} entities, got more")
+    check_limit("elements", count, "entities, those in blocks as often as they are inserted")
 
 
 def _check_inserts(document: Any) -> None:

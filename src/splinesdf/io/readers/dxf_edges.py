@@ -95,6 +95,8 @@ def _polyline(entity: Any) -> Iterator[list[Floats]]:
     if entity.is_poly_face_mesh or entity.is_polygon_mesh:
         raise Flat("a mesh")
     vertices = [v for v in entity.vertices if not v.dxf.get("flags", 0) & 16]  # no spline frame
+    if not all(v.dxf.hasattr("location") for v in vertices):
+        raise Flat("with a corner that is nowhere")
     places = np.array([tuple(v.dxf.location) for v in vertices], dtype=np.float64).reshape(-1, 3)
     if entity.is_3d_polyline:
         _check_level(places)
