@@ -2,9 +2,9 @@
 
     python -m benchmarks.drawings FOLDER ... [--most 300] [--across 512 1024] [--stroke outline]
 
-Of each folder files are drawn evenly, or in an order by chance until ``--seconds`` are over. Printed are those that are not right, by name and reason, and
-how many of each folder are. Strokes fill nothing here; a drawing of strokes only is right if it is
-refused with the option that reads them.
+Of each folder files are drawn evenly, or by chance until ``--seconds`` are over. Printed are those
+that are not right, by name and reason, and how many of each folder are. Strokes fill nothing here;
+a drawing of strokes only is right if it is refused with the option that reads them.
 """
 
 from __future__ import annotations

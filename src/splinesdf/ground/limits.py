@@ -43,12 +43,13 @@ class Limits:
     formulas : int
         Pieces that all formulas of a file need: 200,000, 5 s. (One needs up to 20,000.)
     crossings : int
-        Places where contours cross or touch: 100,000. Grows like the square of what is drawn.
+        Places where contours cross or touch: 300,000, 20 s. Grows like the square of what is drawn;
+        the outline of one stroke that bends within its own width may have as many.
     pairs : int
         Pairs of short arcs side by side, which may cross: 50,000,000.
     elements : int
         Elements that a drawing draws, entities of a DXF file, as often as they are referred to:
-        1,000,000.
+        200,000, a quarter of a millisecond each.
     clips : int
         Elements times the clips around each: 100,000.
     tags : int
@@ -66,9 +67,9 @@ class Limits:
     expanded: int = 100_000_000
     pieces: int = 1_000_000
     formulas: int = 200_000
-    crossings: int = 100_000
+    crossings: int = 300_000
     pairs: int = 50_000_000
-    elements: int = 1_000_000
+    elements: int = 200_000
     clips: int = 100_000
     tags: int = 4_000_000
     nesting: int = 100

@@ -155,11 +155,11 @@ def _content(file: Path, most: int) -> bytes:
         if file.exists() and not file.is_file():
             # Reading from a pipe or a device might never end.
             raise InputError("expected a regular file, got a pipe or a device")
+        length = file.stat().st_size
         with file.open("rb") as opened:
-            content = opened.read(most + 1)  # it may grow after it was looked at
-        if len(content) > most:
-            words = f"expected a file of up to {most:,} bytes, got {file.stat().st_size:,}"
-            raise too_much("bytes", words)
+            content = opened.read(most + 1) if length <= most else b""
+        if length > most or len(content) > most:  # it may have grown since
+            raise too_much("bytes", f"expected a file of up to {most:,} bytes, got {length:,}")
         return content
     except FileNotFoundError as error:
         raise InputError(f"the file does not exist in {str(file.parent)!r}") from error

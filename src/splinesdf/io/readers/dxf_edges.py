@@ -21,8 +21,8 @@ from splinesdf.shapes.sources.nurbs import nurbs_pieces
 _UPRIGHT = 1e-9
 # Numbers beyond this are no drawing's, and products of theirs overflow.
 _LARGEST = 1e100
-# Arcs of a smaller bulge, the tangent of a quarter of their angle, are cubics to rounding: what
-# these miss is 1e-3 of the sixth power of the bulge. Larger: that could be seen; smaller: the
+# Arcs of a smaller bulge, the tangent of a quarter of their angle, are cubics to rounding: these
+# miss 0.02 of the fifth power of the bulge, in chords. Larger: that could be seen; smaller: the
 # center is so far away that its rounding is seen.
 _SLIGHT = 1e-3
 # Points whose heights differ by less than this share of the entity's size are in one plane.
