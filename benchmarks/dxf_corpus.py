@@ -229,7 +229,8 @@ def judged(file: Path) -> Row:
             document = ezdxf.filemanagement.readfile(str(file))
         right = expected(polylines(document))
     except Exception as error:  # what ezdxf runs into in damaged files
-        return Row("not judged", f"{reason or 'read'}; the judge: {error!r:.80}")
+        verdict = "refused" if reason else "not judged"
+        return Row(verdict, f"{reason or 'read'}; the judge: {error!r:.80}")
     if shape is None:
         if right is None or not len(right.inside):
             return Row("refused", reason)

@@ -237,8 +237,7 @@ def test_small_files_that_ask_for_much_are_refused_before_the_memory_is_gone(
     assert done.returncode == 0, done.stderr
     assert not done.stderr
     expected = [words for _, words in files.values()] + ["up to 50,000,000 bytes"]
-    for name, line, words in zip(names, done.stdout.splitlines(), expected, strict=True):
-        assert line.startswith(f"{name}: "), line
+    for line, words in zip(done.stdout.splitlines(), expected, strict=True):
         assert words in line
 
 

@@ -46,7 +46,7 @@ class Joined(NamedTuple):
     """
 
     loops: list[list[Floats]]
-    count: int  # how many were joined to another
+    paths: int  # how many were joined to another
     largest: float  # the largest gap between ends that were joined
     forks: int  # places of closed outlines where an odd number of paths end: one leads nowhere
 

@@ -22,7 +22,7 @@ from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
 from splinesdf.ground.limits import Limits, limits_in_use, using
-from splinesdf.shapes.boundary import filled_boundary, kept_loops, touching_of
+from splinesdf.shapes.boundary import kept_loops, some_boundary
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
 from splinesdf.shapes.sources.conics import contour_loops
@@ -338,17 +338,8 @@ class Shape:
             If nothing is filled: every contour is traced to and fro, or twice under "evenodd";
             or if the contours cross more often than ``limits`` says.
         """
-        largest = float(np.abs(self.control).max())
         with using(self.limits):
-            found = filled_boundary(self.arclets, 0 if self.fill == "evenodd" else 1, largest)
-        if found is None:
-            other = "nonzero" if self.fill == "evenodd" else "evenodd"
-            raise InputError(
-                f"the contours fill nothing under the rule {self.fill!r}: they are traced to and "
-                "fro, or twice, or nowhere wider than the rounding of their coordinates, "
-                f"{touching_of(largest):.2g}; draw each once, or try fill={other!r}"
-            )
-        return found
+            return some_boundary(self.arclets, self.fill, float(np.abs(self.control).max()))
 
     @cached_property
     def bends(self) -> Bends:

@@ -241,10 +241,10 @@ def _joined(loops: Loops, options: Options) -> tuple[Loops, list[str]]:
             f"not one region: outlines fork at {found.forks} places, where an odd number of edges "
             "end; the earlier ones in the file are joined"
         )
-    if not found.count or found.largest <= 1e-12 * size:
+    if not found.paths or found.largest <= 1e-12 * size:
         return found.loops, notes
     gap = PRINTED_GAP * size if options.gap is None else options.gap
-    notes.append(f"joined end to end: {found.count} edges, over gaps of up to {found.largest:.3g}")
+    notes.append(f"joined end to end: {found.paths} edges, over gaps of up to {found.largest:.3g}")
     return [_bridged(chain, gap) for chain in found.loops], notes
 
 
