@@ -145,6 +145,7 @@ def test_limits_are_those_of_one_reading(tmp_path: Path) -> None:
     for limits in (ss.Limits(pieces=2), ss.Limits(bytes=5)):
         with pytest.raises(ss.InputError):
             ss.read(file, limits=limits)
+        assert ss.Shape.from_points(POINTS).limits == ss.Limits()
         assert ss.read(file).limits == ss.Limits()
     with pytest.raises(ss.InputError, match="limits such as"):
         ss.read(file, limits={"pieces": 5})
