@@ -61,7 +61,7 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(
         (
             *("shape", "space", "operator", "element", "stroke", "ignore", "layers", "text"),
-            *("ids", "stroke_color"),
+            *("ids", "stroke_color", "limits"),
             *("location", "geometry", "certify", "coarse", "once", "fitted", "outside", "path"),
             *("fill", "close", "name"),
             *("contours", "contour", "arcs", "units", "milling", "direction", "smooth", "periodic"),

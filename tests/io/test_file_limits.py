@@ -149,6 +149,8 @@ def test_limits_are_those_of_one_reading(tmp_path: Path) -> None:
         assert ss.read(file).limits == ss.Limits()
     with pytest.raises(ss.InputError, match="limits such as"):
         ss.read(file, limits={"pieces": 5})
+    with pytest.raises(ss.InputError, match="limits such as"):
+        dataclasses.replace(ss.read(file), limits=5)
     for wrong in ({"pieces": 0}, {"bytes": 1.5}, {"nesting": 5000}, {"crossings": math.nan}):
         with pytest.raises(ss.InputError, match=f"the limit '{min(wrong)}'"):
             ss.Limits(**wrong)

@@ -86,6 +86,13 @@ _USUAL = Limits()
 _in_use: ContextVar[Limits] = ContextVar("limits", default=_USUAL)
 
 
+def checked_limits(limits: Limits | None) -> Limits:
+    """The limits, the usual ones for None, or an `InputError`."""
+    if limits is not None and not isinstance(limits, Limits):
+        raise InputError(f"expected limits such as Limits(pieces=5000000), got {limits!r:.60}")
+    return Limits() if limits is None else limits
+
+
 def limits_in_use() -> Limits:
     """Those of the reading that is under way, or else the usual ones."""
     return _in_use.get()

@@ -12,7 +12,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
-from splinesdf.ground.limits import Limits, too_much, using
+from splinesdf.ground.limits import Limits, checked_limits, too_much, using
 from splinesdf.ground.paths import as_path, shortened
 from splinesdf.io.readers import READERS, USED
 from splinesdf.io.readers.points import read_blocks
@@ -20,7 +20,6 @@ from splinesdf.io.readers.source import (
     ReadOptions,
     Source,
     check_used,
-    checked_limits,
     checked_options,
     read_options,
 )

@@ -21,7 +21,7 @@ from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
-from splinesdf.ground.limits import Limits, limits_in_use, using
+from splinesdf.ground.limits import Limits, checked_limits, limits_in_use, using
 from splinesdf.shapes.boundary import kept_loops, some_boundary
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
@@ -81,6 +81,7 @@ class Shape:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "control", as_points(self.control))
+        object.__setattr__(self, "limits", checked_limits(self.limits))
         if self.unit is not None:
             object.__setattr__(self, "unit", positive(self.unit, "unit"))
 

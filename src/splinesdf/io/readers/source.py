@@ -8,7 +8,7 @@ from typing import NamedTuple, TypedDict
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import finite, positive
-from splinesdf.ground.limits import Limits
+from splinesdf.ground.limits import Limits, checked_limits
 from splinesdf.ground.options import check_known, with_options
 
 STROKES = ("none", "outline", "centre")
@@ -138,13 +138,6 @@ def checked_options(given: ReadOptions) -> Options:
         _location(given.get("location")),
         checked_limits(given.get("limits")),
     )
-
-
-def checked_limits(limits: Limits | None) -> Limits:
-    """The limits, the usual ones for None, or an `InputError`."""
-    if limits is not None and not isinstance(limits, Limits):
-        raise InputError(f"expected limits such as Limits(pieces=5000000), got {limits!r:.60}")
-    return Limits() if limits is None else limits
 
 
 def check_used(options: Options, used: Mapping[str, Collection[str]], suffix: str) -> None:
