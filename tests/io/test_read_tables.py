@@ -172,6 +172,12 @@ def test_degrees_and_heights_are_noted(read: Read) -> None:
         ("a.wkt", "POLYGON 0 0", r"expected '\('"),
         ("a.wkt", "POLYGON ((0 0, 1 x, 1 1))", "expected a number, got 'x'"),
         ("a.wkt", "CURVEPOLYGON ((0 0, 1 0, 1 1))", "got 'CURVEPOLYGON'"),
+        ("a.wkt", "POLYGON((0 0,1 0,0 1),())", "at least 3 distinct points, got none"),
+        (
+            "a.geojson",
+            {"type": "Polygon", "coordinates": [[]]},
+            "at least 3 distinct points, got none",
+        ),
         ("a.wkt", "POLYGON " + "(" * 200, "up to 100 brackets"),
         ("a.wkt", "POLYGON ((0 0, 1 0, 1 1)) ?", "character 26"),
         ("a.wkt", "POINT (1 2)", "expected polygons, got 1 POINT"),
