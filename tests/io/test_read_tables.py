@@ -175,7 +175,7 @@ def test_degrees_and_heights_are_noted(read: Read) -> None:
         ("a.wkt", "POLYGON((0 0,1 0,0 1),())", "at least 3 distinct points, got none"),
         (
             "a.geojson",
-            {"type": "Polygon", "coordinates": [[]]},
+            '{"type": "Polygon", "coordinates": [[]]}',
             "at least 3 distinct points, got none",
         ),
         ("a.wkt", "POLYGON " + "(" * 200, "up to 100 brackets"),
