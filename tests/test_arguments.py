@@ -61,7 +61,7 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(
         (
             *("shape", "space", "operator", "element", "stroke", "ignore", "layers", "text"),
-            *("ids", "stroke_color", "flip"),
+            *("ids", "stroke_color", "flip", "limits"),
             *("location", "geometry", "certify", "coarse", "once", "fitted", "outside", "path"),
             *("fill", "close", "name", "content"),
             *("contours", "contour", "arcs", "units", "milling", "direction", "smooth", "periodic"),

@@ -18,6 +18,7 @@ from splinesdf.errors import (
 )
 from splinesdf.fits.fit import FitResult, fit
 from splinesdf.fits.interpolation import interpolate
+from splinesdf.ground.limits import Limits
 from splinesdf.io.input import read, read_all
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
@@ -37,6 +38,7 @@ __all__ = [
     "DistanceGrid",
     "FitResult",
     "InputError",
+    "Limits",
     "Milling",
     "MissingExtraError",
     "OpenContourError",

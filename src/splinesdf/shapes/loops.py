@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from splinesdf.errors import InputError, OpenContourError
 from splinesdf.ground.arrays import LARGEST, NOTHING, Floats, as_points, largest_coordinate
+from splinesdf.ground.limits import check_limit
 
 Fill = Literal["nonzero", "evenodd"]
 
@@ -24,9 +25,6 @@ PRINTED_GAP = 1e-6
 # Sizes below this share of the coordinates are refused. Smaller: arcs and transforms are rounded by
 # what can be seen of a shape.
 _LOST = 1e-9
-# Pieces of a shape. More: a kilobyte and ten microseconds each, before the first distance; fewer:
-# maps of whole countries are refused.
-MOST_PIECES = 1_000_000
 # A curve whose control points are within this share of the largest coordinate of the line through
 # its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
 # curves that run to and fro along a line keep arcs that only rounding gives a side.
@@ -40,10 +38,6 @@ def fill_rule(fill: str) -> Fill:
     if fill == "evenodd":
         return "evenodd"
     raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r}")
-
-
-class TooMuch(InputError):
-    """More than a shape may have: no error of one element that others may stand beside."""
 
 
 def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[list[Floats]]:
@@ -76,6 +70,7 @@ def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[l
             closed.append(pieces)
     if not closed:
         raise InputError("expected a curve that encloses something, got only points")
+    check_count(sum(map(len, closed)))
     return closed
 
 
@@ -107,11 +102,7 @@ def extent(loops: Sequence[Sequence[Floats]]) -> tuple[float, float]:
 
 def check_count(count: int) -> None:
     """Refuse more pieces than a shape may have, before there are tables of them."""
-    if count > MOST_PIECES:
-        raise TooMuch(
-            f"expected at most {MOST_PIECES:,} pieces and corners, got more: leave out what is not "
-            "needed, or simplify it"
-        )
+    check_limit("pieces", count, "pieces and corners")
 
 
 def check_place(size: float, largest: float, whose: str = "its") -> None:

@@ -19,9 +19,9 @@ from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
-from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, Page, as_page, as_points, finite, positive, whole
-from splinesdf.shapes.boundary import filled_boundary, kept_loops, touching_of
+from splinesdf.ground.limits import Limits, checked_limits, limits_in_use, using
+from splinesdf.shapes.boundary import kept_loops, some_boundary
 from splinesdf.shapes.loops import Fill, fill_rule
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
@@ -65,6 +65,9 @@ class Shape:
     page : (xmin, ymin, xmax, ymax) or None
         The page of a drawing, in the coordinates' unit, if the source has one. `write` mirrors y
         about its height.
+    limits : Limits
+        How many crossings its contours may have, which are found when first a distance is asked
+        for: those that it was read with. ``dataclasses.replace(shape, limits=...)`` has others.
     """
 
     control: Floats
@@ -76,10 +79,12 @@ class Shape:
     notes: tuple[str, ...] = field(default=())
     unit: float | None = None
     page: Page | None = None
+    limits: Limits = field(default_factory=limits_in_use, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "page", as_page(self.page))
         object.__setattr__(self, "control", as_points(self.control))
+        object.__setattr__(self, "limits", checked_limits(self.limits))
         if self.unit is not None:
             object.__setattr__(self, "unit", positive(self.unit, "unit"))
 
@@ -339,18 +344,11 @@ class Shape:
         Raises
         ------
         InputError
-            If nothing is filled: every contour is traced to and fro, or twice under "evenodd".
+            If nothing is filled: every contour is traced to and fro, or twice under "evenodd";
+            or if the contours cross more often than ``limits`` says.
         """
-        largest = float(np.abs(self.control).max())
-        found = filled_boundary(self.arclets, 0 if self.fill == "evenodd" else 1, largest)
-        if found is None:
-            other = "nonzero" if self.fill == "evenodd" else "evenodd"
-            raise InputError(
-                f"the contours fill nothing under the rule {self.fill!r}: they are traced to and "
-                "fro, or twice, or nowhere wider than the rounding of their coordinates, "
-                f"{touching_of(largest):.2g}; draw each once, or try fill={other!r}"
-            )
-        return found
+        with using(self.limits):
+            return some_boundary(self.arclets, self.fill, float(np.abs(self.control).max()))
 
     @cached_property
     def bends(self) -> Bends:

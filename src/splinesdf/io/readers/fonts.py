@@ -10,6 +10,7 @@ so.
 from __future__ import annotations
 
 import io
+import logging
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import pairwise
@@ -108,6 +109,8 @@ def opened(content: bytes) -> Any:
         raise MissingExtraError(
             "reading fonts needs fontTools: pip install 'splinesdf[fonts]'"
         ) from error
+    # What it says of a damaged font goes to the screen otherwise.
+    logging.getLogger("fontTools").setLevel(logging.CRITICAL)
     try:
         check_unpacked(content)
         font = TTFont(io.BytesIO(content), fontNumber=0, lazy=True)

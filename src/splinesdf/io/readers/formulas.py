@@ -11,6 +11,7 @@ from typing import Any
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.limits import check_limit
 from splinesdf.io.readers.maps import geojson_reading
 from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source
@@ -20,8 +21,6 @@ from splinesdf.shapes.sources.geojson import TYPES
 
 _CURVE = ("x", "y", "t")
 _WHOLE = ("fill", "name")
-# Pieces that all formulas of a file may need: 5 s. One may need 20,000.
-_MOST_PIECES = 200_000
 _FULL_TURN = [0.0, "2*pi"]
 
 
@@ -88,10 +87,7 @@ def _several(
                 raise InputError(f'expected an object with "x" and "y", got {_kind(entry)}')
             result.append(read(entry, ()))
             count += len(result[-1])
-            if count > _MOST_PIECES:
-                raise InputError(
-                    f"expected formulas that need up to {_MOST_PIECES:,} pieces in all, got more"
-                )
+            check_limit("formulas", count, "pieces of all formulas together")
         except InputError as error:
             raise InputError(f"{key.removesuffix('s')} {number}: {error}") from error
     return result

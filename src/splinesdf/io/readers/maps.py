@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 
 from splinesdf.errors import InputError
+from splinesdf.ground.limits import check_limit
 from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.sources.geojson import Polygons, add_polygon, nothing_found, polygons_of
 
-# Brackets within brackets. More: nothing that is drawn has more.
-_DEEPEST = 100
 _WKT = re.compile(r"\s*(?:([A-Za-z]+)|([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|([(),;=]))")
 
 
@@ -76,8 +75,7 @@ def _tokens(text: str) -> Iterator[str]:
 
 def _geometry(tokens: list[str], at: int, found: Polygons, depth: int) -> int:
     """Read a geometry from a token on; the token after it."""
-    if depth > _DEEPEST:
-        raise InputError(f"expected geometries nested up to {_DEEPEST} deep, got deeper ones")
+    check_limit("nesting", depth, "geometries within one another")
     kind, at = _take(tokens, at).upper(), at + 1
     if kind != "GEOMETRYCOLLECTION":  # its geometries are elements each
         found.elements.append(f"{kind[:20]} {len(found.elements) + 1}")
@@ -114,8 +112,7 @@ def _nested(tokens: list[str], at: int) -> tuple[list[Any], int]:
         token, at = _take(tokens, at), at + 1
         if token == "(":
             stack.append([])
-            if len(stack) > _DEEPEST:
-                raise InputError(f"expected brackets up to {_DEEPEST} deep, got deeper ones")
+            check_limit("nesting", len(stack), "brackets within one another")
         elif token in (",", ")"):
             if point:
                 stack[-1].append(point)

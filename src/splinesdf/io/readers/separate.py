@@ -20,9 +20,10 @@ import numpy as np
 from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.ground.limits import TooMuch
 from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.shapes.boundary import kept_loops
-from splinesdf.shapes.loops import TooMuch, closed_loops
+from splinesdf.shapes.loops import closed_loops
 from splinesdf.shapes.region import Loops, intersection, region, united_regions
 from splinesdf.shapes.repeats import drawn_once, first_of_each, moments_of, repeats_note
 from splinesdf.shapes.shape import Shape

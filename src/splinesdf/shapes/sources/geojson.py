@@ -11,6 +11,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.limits import check_limit
 from splinesdf.shapes.loops import check_count
 from splinesdf.shapes.region import Loops, united_regions
 from splinesdf.shapes.sources.compiled import polygon
@@ -19,8 +20,6 @@ TYPES = frozenset(
     ("FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
      "MultiPoint", "LineString", "MultiLineString", "LinearRing")
 )  # fmt: skip
-# Geometries within geometries. More: Python's calls run out; nothing that is drawn has more.
-_DEEPEST = 100
 
 
 class Polygons(NamedTuple):
@@ -79,8 +78,7 @@ def polygons_of(value: Any) -> Polygons:
 
 def _collect(value: Any, found: Polygons, depth: int, *, named: bool = False) -> None:
     """Add the polygons of an object; if it is ``named``, they are of the last element."""
-    if depth > _DEEPEST:
-        raise InputError(f"expected geometries nested up to {_DEEPEST} deep, got deeper ones")
+    check_limit("nesting", depth, "geometries within one another")
     if value is None:
         return
     kind = value.get("type") if isinstance(value, Mapping) else None
