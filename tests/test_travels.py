@@ -137,6 +137,7 @@ def examples() -> dict[type, Any]:
         ss.project(shape, points),
         ss.signed_distance_grid(shape, 3, 4),
         result().spline.grid(3, 4),
+        result().spline.triangles(),
         ss.texture(shape, 5, range=0.1),
         dataclasses.replace(ss.atlas({"limaçon": shape}, size=8), kerning=(Kern("A", "V", -0.1),)),
         ss.offset(shape, [-0.02, 0.1], tolerance=1e-4),

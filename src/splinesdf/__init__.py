@@ -30,6 +30,7 @@ from splinesdf.rasters.texture import Texture, texture
 from splinesdf.shapes.shape import Shape
 from splinesdf.splines.samples import from_level_set
 from splinesdf.splines.spline import SplineSDF, load
+from splinesdf.splines.triangles import Triangles
 
 __version__ = "0.1.0"
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "SplineSDFError",
     "Texture",
     "ToleranceNotReached",
+    "Triangles",
     "as_arcs",
     "atlas",
     "closest_point",
