@@ -10,9 +10,9 @@ Nothing here calls the package; of a `Shape` only the control points are read.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -50,7 +50,7 @@ def piece(shape: ss.Shape, index: int) -> np.ndarray:
 
 
 def _piece_polylines(pieces: Sequence[np.ndarray], deviation: float) -> list[np.ndarray]:
-    """Each Bézier piece as a polyline with both ends; all of a degree and a number of steps once."""
+    """Each Bézier piece as a polyline with both ends; those of one degree and fineness at once."""
     result = [np.empty((0, 2))] * len(pieces)
     degrees = np.array([len(control) - 1 for control in pieces])
     for degree in np.unique(degrees):
@@ -75,8 +75,15 @@ def _piece_polylines(pieces: Sequence[np.ndarray], deviation: float) -> list[np.
 
 def polyline_distance(lines: Iterable[np.ndarray], points: np.ndarray) -> np.ndarray:
     """Unsigned distance to the nearest of some polylines, by GEOS."""
-    runs = np.concatenate([_runs(line) for line in lines])
-    where, distance = shapely.STRtree(runs).query_nearest(
+    return _distance_to(_tree(lines), points)
+
+
+def _tree(lines: Iterable[np.ndarray]) -> shapely.STRtree:
+    return shapely.STRtree(np.concatenate([_runs(line) for line in lines]))
+
+
+def _distance_to(tree: shapely.STRtree, points: np.ndarray) -> np.ndarray:
+    where, distance = tree.query_nearest(
         shapely.points(points), all_matches=False, return_distance=True
     )
     result = np.full(len(points), np.nan)
@@ -161,10 +168,23 @@ def signed_polyline_distance(
 ) -> np.ndarray | None:
     """Signed distance to the boundary of what the polylines fill, None if they fill nothing."""
     boundary = filled_boundary(rings, fill, snap=snap)
-    if not boundary:
-        return None
+    return _signed(rings, fill, _tree(boundary), points) if boundary else None
+
+
+def _signed(
+    rings: Sequence[np.ndarray], fill: str, boundary: shapely.STRtree, points: np.ndarray
+) -> np.ndarray:
     inside = is_filled(winding_number(rings, points), fill)
-    return np.where(inside, -1.0, 1.0) * polyline_distance(boundary, points)
+    return np.where(inside, -1.0, 1.0) * _distance_to(boundary, points)
+
+
+@lru_cache(maxsize=8)
+def _drawn(shape: ss.Shape, deviation: float) -> tuple[list[np.ndarray], shapely.STRtree] | None:
+    """The polylines of a shape and the boundary of what they fill; None if they fill nothing."""
+    rings = polylines(shape, deviation)
+    snap = SNAP * float(np.abs(shape.control).max())
+    boundary = filled_boundary(rings, shape.fill, snap=snap)
+    return (rings, _tree(boundary)) if boundary else None
 
 
 def sure_polyline_distance(
@@ -175,13 +195,10 @@ def sure_polyline_distance(
     Where contours cross at a small angle, or touch, the filled region's boundary moves by much
     more than the polylines deviate. Those are the places where two finenesses do not agree.
     """
-    snap = SNAP * float(np.abs(shape.control).max())
-    coarse, fine = (
-        signed_polyline_distance(polylines(shape, d), shape.fill, points, snap=snap)
-        for d in (deviation, deviation / 16.0)
-    )
-    if coarse is None or fine is None:
+    both = _drawn(shape, deviation), _drawn(shape, deviation / 16.0)
+    if both[0] is None or both[1] is None:
         return None
+    coarse, fine = (_signed(rings, shape.fill, tree, points) for rings, tree in both)
     return fine, np.abs(np.abs(coarse) - np.abs(fine)) < 2.0 * deviation
 
 
