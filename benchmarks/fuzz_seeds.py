@@ -7,10 +7,12 @@ import io
 import json
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 import splinesdf as ss
+from benchmarks.mutations import FONTS
 
 _DATA = Path(__file__).parents[1] / "tests" / "data"
 _SHIPPED = Path(ss.__file__).parent / "data"
@@ -46,6 +48,32 @@ _WKT = (
     "0))),POINT(1 1))",
 )  # fmt: skip
 _CSV = ("x,y\n0,0\n4,0\n4,3\n\n1,1\n2,1\n2,2\n", "0;0\n4,5;0\n4;3\n", "0 0\n4 0\n4 4\n0 4\n")
+# Of the first kind that programs wrote, which needs no tables: short, so that numbers are struck.
+_DXF = tuple(
+    "0\nSECTION\n2\n" + "ENDSEC\n0\nSECTION\n2\n".join(sections) + "ENDSEC\n0\nEOF\n"
+    for sections in (
+        (
+            "ENTITIES\n0\nCIRCLE\n8\n0\n10\n0\n20\n0\n40\n5\n0\nLINE\n8\na\n10\n9\n20\n0\n11\n12\n21"
+            "\n0\n0\nLINE\n8\na\n10\n12\n20\n0\n11\n9\n21\n4\n0\nARC\n8\na\n10\n9\n20\n2\n40\n2\n50\n90\n"
+            "51\n270\n0\n",
+        ),
+        (
+            "BLOCKS\n0\nBLOCK\n8\n0\n2\nb\n70\n0\n10\n0\n20\n0\n0\nCIRCLE\n8\n0\n10\n1\n20\n0\n40\n1\n"
+            "0\nENDBLK\n0\n",
+            "ENTITIES\n0\nINSERT\n8\n0\n2\nb\n10\n3\n20\n4\n41\n2\n42\n-1\n50\n30\n70\n2\n44\n5\n0\n",
+        ),
+        (
+            "ENTITIES\n0\nPOLYLINE\n8\n0\n66\n1\n70\n1\n0\nVERTEX\n8\n0\n10\n0\n20\n0\n42\n0.5\n0\nVERTEX"
+            "\n8\n0\n10\n4\n20\n0\n0\nVERTEX\n8\n0\n10\n4\n20\n3\n42\n-0.2\n0\nSEQEND\n0\n",
+        ),
+        (
+            "ENTITIES\n0\nLWPOLYLINE\n8\n0\n90\n3\n70\n1\n10\n0\n20\n0\n10\n4\n20\n0\n42\n1\n10\n4\n20\n3\n0"
+            "\nELLIPSE\n8\n0\n10\n9\n20\n0\n30\n0\n11\n2\n21\n1\n31\n0\n40\n0.5\n41\n0\n42\n6.283185307179586"
+            "\n0\nSPLINE\n8\n0\n70\n8\n71\n3\n72\n8\n73\n4\n40\n0\n40\n0\n40\n0\n40\n0\n40\n1\n40\n1\n40\n1"
+            "\n40\n1\n10\n0\n20\n5\n10\n9\n20\n5\n10\n0\n20\n9\n10\n0\n20\n5\n0\n",
+        ),
+    )
+)  # fmt: skip
 _DAT = ("NACA\n1 0\n0.5 0.1\n0 0\n0.5 -0.1\n1 0\n", "a\n1 0\n0 1\n0 0\n999. 999.\n3 3\n4 3\n3 4\n")
 
 
@@ -71,27 +99,70 @@ def seeds(reader: str) -> list[bytes]:
         found += [gzip.compress(text.encode(), mtime=0) for text in _SVG]
     if reader == ".npz":
         found += _saved()
-    if reader in (".woff2", ".ttf"):
-        found += [_font(name, packed=reader == ".woff2") for name in _FONTS]
+    if reader in FONTS:
+        found = _fonts(reader)
+    if reader == ".dxf":
+        found += 4 * [text.encode() for text in _DXF]
     return found + own.get(reader, [])
 
 
+# Fonts of two kinds of outlines: one that is variable, and one that is not.
 _FONTS = ("inter-latin-wght-normal.woff2", "roboto-latin-400-normal.woff2")
+_FLAVORS = {".woff": "woff", ".woff2": "woff2"}
 
 
-def _font(name: str, *, packed: bool) -> bytes:
-    """A font of a few letters: what a changed byte strikes is then often what is read."""
+def _fonts(reader: str) -> list[bytes]:
+    """Fonts of a few letters: what a changed byte strikes is then often what is read."""
     from fontTools import subset
-    from fontTools.ttLib import TTFont
+    from fontTools.ttLib import TTCollection, TTFont
 
-    font = TTFont(_DATA / "fonts" / name)
-    chosen = subset.Subsetter()
-    chosen.populate(text="Ag8\u00e9 ")
-    chosen.subset(font)
-    font.flavor = "woff2" if packed else None
+    fonts = []
+    for name in _FONTS:
+        font = TTFont(_DATA / "fonts" / name)
+        chosen = subset.Subsetter()
+        chosen.populate(text="Ag8\u00e9 ")
+        chosen.subset(font)
+        font.flavor = None
+        fonts.append(font)
+    if reader == ".otf":
+        fonts = [_with_cubics(font) for font in fonts]
+    if reader == ".ttc":
+        collection = TTCollection()
+        collection.fonts = fonts[::-1]
+        return [_bytes_of(collection)]
+    for font in fonts:
+        font.flavor = _FLAVORS.get(reader)
+    return [_bytes_of(font) for font in fonts]
+
+
+def _bytes_of(font: Any) -> bytes:
     result = io.BytesIO()
     font.save(result)
     return result.getvalue()
+
+
+def _with_cubics(font: Any) -> Any:
+    """A font of the same letters with the outlines of PostScript."""
+    from fontTools.fontBuilder import FontBuilder
+    from fontTools.pens.qu2cuPen import Qu2CuPen
+    from fontTools.pens.t2CharStringPen import T2CharStringPen
+
+    glyphs, drawn = font.getGlyphSet(), {}
+    for name in font.getGlyphOrder():
+        pen = T2CharStringPen(glyphs[name].width, glyphs)
+        glyphs[name].draw(Qu2CuPen(pen, 1.0, all_cubic=True))
+        drawn[name] = pen.getCharString()
+    builder = FontBuilder(font["head"].unitsPerEm, isTTF=False)
+    builder.setupGlyphOrder(font.getGlyphOrder())
+    builder.setupCharacterMap(font.getBestCmap())
+    builder.setupCFF("Test", {}, drawn, {})
+    builder.setupHorizontalMetrics({name: (int(glyphs[name].width), 0) for name in drawn})
+    head = font["hhea"]
+    builder.setupHorizontalHeader(ascent=head.ascent, descent=head.descent)
+    builder.setupNameTable({"familyName": "Test", "styleName": "Regular"})
+    builder.setupOS2()
+    builder.setupPost()
+    return builder.font
 
 
 def _saved() -> list[bytes]:

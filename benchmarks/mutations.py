@@ -6,6 +6,7 @@ import gzip
 import io
 import random
 import re
+import struct
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -65,13 +66,15 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _MOST_TIMES, _LONGEST = 40, 200_000
 
 Chosen = random.Random
+FONTS = (".ttf", ".otf", ".ttc", ".woff", ".woff2")
 
 
 def mutated(seed: bytes, other: bytes, reader: str, dice: Chosen) -> bytes:
     """A file like ``seed``, with one to a few things changed; ``other`` lends parts."""
-    if reader in (".npz", ".woff2", ".ttf"):
-        change = _members if reader == ".npz" and dice.random() < 0.7 else _bytes
-        return change(seed, other, dice)
+    if reader == ".npz":
+        return (_members if dice.random() < 0.7 else _bytes)(seed, other, dice)
+    if reader in FONTS:
+        return _font(seed, other, reader, dice)
     if reader == ".svgz":
         if dice.random() < 0.2:
             return _bytes(seed, other, dice)
@@ -142,6 +145,53 @@ def _bytes(seed: bytes, other: bytes, dice: Chosen) -> bytes:
     return bytes(data)
 
 
+def _font(seed: bytes, other: bytes, reader: str, dice: Chosen) -> bytes:
+    """A font with bytes changed, most often in its tables, which packed ones unpack to as well."""
+    kind = dice.random()
+    if kind < 0.3:
+        return _bytes(seed, other, dice)
+    if reader == ".woff2":
+        return _woff2(seed, other, dice)
+    tables = _tables(seed)
+    at, length, packed = dice.choice(tables)
+    inner = seed[at : at + length]
+    if packed:
+        inner = zlib.compress(_bytes(zlib.decompress(inner), other, dice))
+        entry = seed.index(struct.pack(">II", at, length), 44)
+        # It comes last, and the directory says so.
+        place = struct.pack(">II", len(seed), len(inner))
+        return seed[:entry] + place + seed[entry + 8 :] + inner
+    inner = _bytes(inner, other, dice)[:length].ljust(length, b"\0")
+    return seed[:at] + inner + seed[at + length :]
+
+
+def _tables(font: bytes) -> list[tuple[int, int, bool]]:
+    """Where each table of a font begins, its length, and whether it is packed."""
+    if font[:4] == b"wOFF":
+        rows = [struct.unpack(">4sIIII", font[44 + 20 * k :][:20]) for k in range(font[13])]
+        return [(at, length, length < full) for _, at, length, full, _ in rows if length]
+    start = int.from_bytes(font[12:16], "big") if font[:4] == b"ttcf" else 0
+    entries = (font[start + 12 + 16 * k :][:16] for k in range(font[start + 5]))
+    rows = [struct.unpack(">4sIII", entry) for entry in entries]
+    return [(at, length, False) for _, _, at, length in rows if length]
+
+
+def _woff2(seed: bytes, other: bytes, dice: Chosen) -> bytes:
+    """A packed font whose tables, all in one stream, are changed."""
+    import brotli
+    from fontTools.ttLib.woff2 import WOFF2DirectoryEntry
+
+    directory = io.BytesIO(seed)
+    directory.seek(48)
+    for _ in range(int.from_bytes(seed[12:14], "big")):
+        WOFF2DirectoryEntry().fromFile(directory)
+    at, length = directory.tell(), int.from_bytes(seed[20:24], "big")
+    inner = _bytes(brotli.decompress(seed[at : at + length]), other, dice)
+    packed = brotli.compress(inner, quality=1)
+    result = seed[:20] + struct.pack(">I", len(packed)) + seed[24:at] + packed
+    return result[:8] + struct.pack(">I", len(result)) + result[12:]
+
+
 def _members(seed: bytes, other: bytes, dice: Chosen) -> bytes:
     """An archive with a member changed, left out, doubled or packed, and right checksums."""
     with zipfile.ZipFile(io.BytesIO(seed)) as archive:
@@ -179,8 +229,6 @@ def _about(member: bytes, dice: Chosen) -> bytes:
 
 
 def _eights() -> tuple[bytes, ...]:
-    import struct
-
     floats = (0.0, -0.0, 1.0, -1.0, 1e-320, 1e-160, 1e60, 1e154, 1e300, float("nan"), float("inf"))
     whole = (0, 1, -1, 2, 1 << 31, (1 << 63) - 1, -(1 << 63), 7, 1000)
     return (*(struct.pack("<d", f) for f in floats), *(struct.pack("<q", n) for n in whole))

@@ -50,18 +50,18 @@ def contour() -> ss.Contour:
 # a few, each of which is tried. Everything else is none.
 KINDS: dict[str, str] = {
     **dict.fromkeys(("tolerance", "step", "max_distance", "min_side", "level", "beyond"), "number"),
-    **dict.fromkeys(("gap", "unit", "size", "range", "em"), "number"),
+    **dict.fromkeys(("gap", "unit", "size", "range", "em", "scale"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
     **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
     **dict.fromkeys(("points", "distances", "control", "knots", "weights", "levels"), "array"),
     **dict.fromkeys(("boxes", "ordinates", "arcs_", "x_", "y_", "values"), "array"),
-    **dict.fromkeys(("domain", "band", "t"), "numbers"),
+    **dict.fromkeys(("domain", "band", "t", "page", "origin"), "numbers"),
     "start": "numbers",
     **dict.fromkeys(
         (
             *("shape", "space", "operator", "element", "stroke", "ignore", "layers", "text"),
-            *("ids", "stroke_color"),
+            *("ids", "stroke_color", "flip", "limits"),
             *("location", "geometry", "certify", "coarse", "once", "fitted", "outside", "path"),
             *("fill", "close", "name", "content"),
             *("contours", "contour", "arcs", "units", "milling", "direction", "smooth", "periodic"),
@@ -100,6 +100,8 @@ GOOD: dict[str, Any] = {
     "domain": UNIT,
     "level": 0.05,
     "beyond": 0.5,
+    "page": (0.0, 0.0, 2.0, 3.0),
+    "origin": (1.0, 2.0),
     "max_distance": 0.5,
     "min_side": 0.001,
     "max_cells": 100_000,
@@ -136,6 +138,7 @@ GOOD_IN: dict[tuple[str, str], Any] = {
     ("Grid", "x"): np.array([0.0, 1.0, 2.0]),
     ("Grid", "y"): np.array([0.0, 1.0, 2.0]),
     ("Contour", "closed"): True,
+    ("Shape", "page"): (0.0, 0.0, 2.0, 3.0),
     ("from_level_set", "x"): np.arange(9.0),
     ("from_level_set", "y"): np.arange(9.0),
     ("from_level_set", "values"): np.add.outer((np.arange(9.0) - 4) ** 2, (np.arange(9.0) - 4) ** 2)

@@ -18,7 +18,8 @@ from splinesdf.errors import (
 )
 from splinesdf.fits.fit import FitResult, fit
 from splinesdf.fits.interpolation import interpolate
-from splinesdf.io.input import read
+from splinesdf.ground.limits import Limits
+from splinesdf.io.input import read, read_all
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
 from splinesdf.meshes.lattice import DistanceGrid
@@ -37,6 +38,7 @@ __all__ = [
     "DistanceGrid",
     "FitResult",
     "InputError",
+    "Limits",
     "Milling",
     "MissingExtraError",
     "OpenContourError",
@@ -56,6 +58,7 @@ __all__ = [
     "offset",
     "project",
     "read",
+    "read_all",
     "signed_distance",
     "signed_distance_grid",
     "texture",

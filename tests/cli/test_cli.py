@@ -272,12 +272,25 @@ BAD: dict[str, tuple[str, list[str], str]] = {
     "output over input": (f".csv|{SQUARE}", ["offset", "a.csv", "-d", "1", "-o", "a.csv"], "input"),
     "points over points": (f".csv|{SQUARE}", ["query", "gamma1", "a.csv", "-o", "a.csv"], "input"),
     "points of three columns": (".csv|1,2,3\n", ["query", "gamma1", "a.csv"], "line 1"),
+    "above a limit": (
+        f".csv|{SQUARE}",
+        ["info", "a.csv", "--limit", "pieces=3"],
+        "--limit pieces=",
+    ),
+    "unknown limit": ("", ["info", "gamma1", "--limit", "parts=3"], "pieces"),
+    "limit that is no number": ("", ["info", "gamma1", "--limit", "pieces=many"], "pieces=5e6"),
     "no saved fit": (".npz|hello", ["info", "a.npz"], "a.npz"),
     "saved fit that is missing": ("", ["query", "b.npz", "a.csv"], "b.npz"),
     "saved fit cut short": ("", ["info", "cut.npz"], "cut.npz"),
     "demo into a file": (".txt|hello", ["demo", "-o", "a.txt"], "a.txt"),
     "figures into a file": (".txt|hello", ["paper", "--figures", "a.txt"], "a.txt"),
 }
+
+
+def test_limits_are_raised_and_lowered_for_one_file(run: Command, tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(SQUARE)
+    assert run("info", "a.csv", "--limit", "pieces=4", "--limit", "bytes=1e3").status == 0
+    assert run("info", "a.csv", "--limit", "pieces=4", "--limit", "bytes=5").status == 2
 
 
 @pytest.mark.parametrize("kind", BAD)

@@ -16,6 +16,7 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.cli.main import main
+from splinesdf.ground.atomic import write_text
 from splinesdf.io.remeasured import measure_file
 from tests.chains import circle, circular
 from tests.named_shapes import gamma
@@ -91,10 +92,8 @@ def test_check_finds_the_top_of_a_bump(tmp_path: Path, name: str) -> None:
 def test_a_damaged_file_has_status_1(
     run: Run, monkeypatch: pytest.MonkeyPatch, damage: str, says: str
 ) -> None:
-    write = ss.write
-
-    def damaged(path: str, contours: list[ss.Contour], **options: object) -> None:
-        write(path, contours, **options)
+    def damaged(path: str, text: str) -> None:
+        write_text(path, text)
         text = Path(path).read_text()
         if damage == "move":
             # One vertex of many, by a hundredth.
@@ -105,7 +104,7 @@ def test_a_damaged_file_has_status_1(
             text = text[: text.index("\n1,") + 1]
         Path(path).write_text(text)
 
-    monkeypatch.setattr(ss, "write", damaged)
+    monkeypatch.setattr("splinesdf.cli.offset.write_text", damaged)
     wanted = ("-d", "0.02", "-d", "-0.02", "--tolerance", "1e-3")
     status, out, err = run("gamma2", *wanted, "-o", "a.csv", "--check")
     assert status == 1
@@ -171,7 +170,7 @@ def test_steps_are_handed_on(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
         (("-d", "1", "-o", "a.nc", "--feed", "-1"), "positive feed"),
         (("-d", "1", "-o", "a.nc", "--depth", "-1"), "below the surface"),
         (("-d", "1", "-o", "a.nc", "--direction", "up"), "'up'"),
-        (("-d", "1", "-o", "a.csv", "--arcs"), "arcs only for"),
+        (("-d", "1", "-o", "a.csv", "--depth", "1"), "milling only for"),
     ],
 )
 def test_bad_options_are_one_line_before_any_work(

@@ -71,12 +71,18 @@ def test_halving_keeps_the_curve() -> None:
 
 def test_box_and_mirror() -> None:
     ring = circle(radius=2.0, center=(5.0, 1.0))
-    # Up to a few percent of the size too large, never too small.
-    assert_allclose(box([ring]), (3.0, -1.0, 7.0, 3.0), atol=0.1)
+    assert_allclose(box([ring]), (3.0, -1.0, 7.0, 3.0), atol=1e-14)
+    dense = evaluate(mixed_chain().arcs, mixed_chain().weights, np.linspace(0.0, 1.0, 10_001))
+    low, high = dense.min(axis=(0, 1)), dense.max(axis=(0, 1))
+    assert_allclose(box([mixed_chain()]), (*low, *high), atol=1e-6)
     flipped = mirrored(ring)
     assert flipped.y_down
     assert flipped.area == pytest.approx(-ring.area, rel=1e-14)
     assert_allclose(mirrored(flipped).arcs, ring.arcs)
+    # About a page from y = -1 to 11: its lower edge comes to where its upper edge was.
+    paged = mirrored(Contour(ring.arcs, ring.weights, page=(0.0, -1.0, 8.0, 11.0)), 10.0)
+    assert paged.page == (0.0, -1.0, 8.0, 11.0)
+    assert_allclose(box([paged]), (3.0, 7.0, 7.0, 11.0), atol=1e-14)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, math.nan, math.inf])

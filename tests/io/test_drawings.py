@@ -50,10 +50,11 @@ def test_the_judge_sees_a_part_that_is_missing_and_one_too_many() -> None:
 
 def ss_loops(text: str) -> list[list[object]]:
     """The loops of a document of one or more elements."""
+    from splinesdf.io.readers.reading import united
     from splinesdf.io.readers.source import Options, Source
-    from splinesdf.io.readers.svg import svg_shape
+    from splinesdf.io.readers.svg import svg_reading
 
-    shape = svg_shape(Source(Path("a.svg"), text.encode(), "a", ".svg"), Options())
+    shape = united(svg_reading(Source(Path("a.svg"), text.encode(), "a", ".svg"), Options()))
     return [
         [shape.piece(k) for k in range(first, last)]
         for first, last in zip(shape.loops[:-1], shape.loops[1:], strict=True)

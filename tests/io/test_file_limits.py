@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import dataclasses
 import gzip
 import io
 import json
+import math
 import random
+import re
+import struct
+import subprocess
+import sys
 import time
+import zlib
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import pytest
+import shapely
 
 import splinesdf as ss
-from splinesdf.arclets import crossings
-from splinesdf.io.readers import dxf, fonts_packed, formulas, svg_document, svg_style, svg_walk
-from splinesdf.shapes import loops
+from splinesdf.io.readers import svg_style
 from tests.reading import assert_one_line
 
 FONTS = Path(__file__).parents[1] / "data" / "fonts"
@@ -27,37 +34,62 @@ def _refused(file: Path, content: str | bytes, expected: str, **options: object)
     assert_one_line(caught.value, file.name)
 
 
+def _limited(file: Path, content: str | bytes, name: str, most: int, **options: object) -> None:
+    """Read a file that asks for so much at that limit, and refuse it one below, by its name."""
+    file.write_bytes(content.encode() if isinstance(content, str) else content)
+    ss.read(file, limits=ss.Limits(**{name: most}), **options)
+    expected = re.escape(f"raise the limit: limits=Limits({name}=...), --limit {name}=...")
+    limits = ss.Limits(**{name: most - 1})
+    _refused(file, content, f"up to {most - 1:,} .*{expected}", limits=limits, **options)
+
+
 POINTS = [(k, k * k % 97) for k in range(60)]
 
 
 @pytest.mark.parametrize(
-    ("name", "content"),
+    ("name", "content", "limit", "most"),
     [
-        ("a.csv", "\n".join(f"{x} {y}" for x, y in POINTS)),
-        ("a.dat", "\n".join(f"{x} {y}" for x, y in POINTS)),
-        ("a.wkt", f"POLYGON (({','.join(f'{x} {y}' for x, y in POINTS)}))"),
-        ("a.geojson", json.dumps({"type": "Polygon", "coordinates": [POINTS]})),
-        ("a.svg", f"<svg><path d='M{' '.join(f'{x} {y}' for x, y in POINTS)}'/></svg>"),
-        ("a.svg", "<svg>" + "<rect width='1' height='1'/>" * 15 + "</svg>"),
-        ("a.svg", "<svg><circle id='a' r='1'/><use href='#a'/></svg>"),
-        ("b.svg", "<svg><clipPath id='a'><circle r='1'/></clipPath>"
-         + "<path d='M0 0H1V1' clip-path='url(#a)'/>" * 2 + "</svg>"),
-        ("a.json", '{"loops":[{"x":"cos(t)","y":"sin(t)"},{"x":"9+cos(t)","y":"sin(t)"}]}'),
+        ("a.csv", "\n".join(f"{x} {y}" for x, y in POINTS), "pieces", 60),
+        ("a.dat", "\n".join(f"{x} {y}" for x, y in POINTS), "pieces", 60),
+        ("a.wkt", f"POLYGON (({','.join(f'{x} {y}' for x, y in POINTS)}))", "pieces", 60),
+        ("a.geojson", json.dumps({"type": "Polygon", "coordinates": [POINTS]}), "pieces", 60),
+        ("a.svg", f"<svg><path d='M{' '.join(f'{x} {y}' for x, y in POINTS)}'/></svg>",
+         "pieces", 60),
+        ("a.svg", "<svg>" + "".join(f"<rect x='{3 * k}' width='1' height='1'/>"
+                                    for k in range(15)) + "</svg>", "pieces", 60),
+        ("a.svg", "<svg><path id='a' d='M0 0H1V1Z'/><use href='#a' x='3'/></svg>", "pieces", 6),
+        ("a.svg", "<svg><clipPath id='a'><rect width='9' height='9'/></clipPath><path "
+         "d='M0 0H1V1Z' clip-path='url(#a)'/></svg>", "pieces", 7),
+        ("a.wkt", "POLYGON((0 0,1 0,0 1))", "bytes", 22),
+        ("a.svgz", gzip.compress(b"<svg><path d='M0 0H1V1Z'/></svg>"), "expanded", 32),
+        ("a.svg", "<svg><path d='M0 0H1V1Z'/></svg>", "tags", 3),
+        ("a.svg", "<svg><g a='' b='' c='' d=''><path d='M0 0H1V1Z'/></g></svg>", "tags", 5),
+        ("a.wkt", "GEOMETRYCOLLECTION(" * 40 + "POLYGON((0 0,1 0,0 1))" + ")" * 40,
+         "nesting", 40),
+        ("a.geojson", '{"type":"GeometryCollection","geometries":[' * 40 + json.dumps(
+            {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1]]]}) + "]}" * 40,
+         "nesting", 40),
     ],
 )  # fmt: skip
-def test_pieces_are_counted(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, content: str
+def test_a_file_is_read_up_to_each_limit(
+    tmp_path: Path, name: str, content: str | bytes, limit: str, most: int
 ) -> None:
-    monkeypatch.setattr(loops, "MOST_PIECES", 50)
-    monkeypatch.setattr(formulas, "_MOST_PIECES", 20)
-    expected = "up to 20 pieces in all" if name == "a.json" else "at most 50 pieces and corners"
-    _refused(tmp_path / name, content, expected)
+    _limited(tmp_path / name, content, limit, most)
 
 
-def test_a_text_of_many_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(loops, "MOST_PIECES", 60)
-    with pytest.raises(ss.InputError, match="at most 60 pieces"):
-        ss.read(FONTS / "roboto-latin-400-normal.woff2", text="8888")
+def test_formulas_are_limited_in_sum(tmp_path: Path) -> None:
+    circle = '{"x":"cos(t)+%d","y":"sin(t)"}'
+    content = '{"loops":[' + ",".join(circle % (3 * k) for k in range(5)) + "]}"
+    (tmp_path / "all.json").write_text(content)
+    pieces = ss.read(tmp_path / "all.json").piece_count
+    _limited(tmp_path / "a.json", content, "formulas", pieces)
+
+
+def test_a_text_of_many_pieces(tmp_path: Path) -> None:
+    name = "roboto-latin-400-normal.woff2"
+    content = (FONTS / name).read_bytes()
+    pieces = ss.read(FONTS / name, text="8888").piece_count
+    _limited(tmp_path / name, content, "pieces", pieces, text="8888")
 
 
 def test_crossings_are_counted_before_there_is_memory_for_them() -> None:
@@ -70,15 +102,66 @@ def test_crossings_are_counted_before_there_is_memory_for_them() -> None:
     assert time.process_time() - began < 10.0
 
 
-def test_pairs_side_by_side_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(crossings, "_MOST", (300_000, 1000))
+STAR = [(round(9 * math.cos(2.4 * k), 3), round(9 * math.sin(2.4 * k), 3)) for k in range(40)]
+
+
+def _crossings(corners: list[tuple[float, float]]) -> int:
+    """Of a polygon's sides, by shapely; none passes through a corner here."""
+    lines = [shapely.LineString([a, b]) for a, b in pairwise([*corners, corners[0]])]
+    return sum(a.crosses(b) for a, b in combinations(lines, 2))
+
+
+def test_a_shape_keeps_the_limit_of_its_crossings(tmp_path: Path) -> None:
+    file, count = tmp_path / "a.csv", _crossings(STAR)
+    file.write_text("\n".join(f"{x} {y}" for x, y in STAR))
+    tight = ss.read(file, limits=ss.Limits(crossings=count - 1))
+    message = f"up to {count - 1:,} crossings and touching places.*Limits.crossings=...., --limit c"
+    for _ in range(2):  # not only when it is first asked for
+        with pytest.raises(ss.InputError, match=message):
+            ss.signed_distance(tight, [0.0, 0.0])
+    roomy = ss.read(file, limits=ss.Limits(crossings=count))
+    assert ss.signed_distance(roomy, [0.0, 0.0]) == ss.signed_distance(
+        ss.Shape.from_points(STAR), [0.0, 0.0]
+    )
+    mended = dataclasses.replace(tight, limits=ss.Limits(crossings=count))
+    assert len(mended.boundary.start) == len(roomy.boundary.start)
+
+
+def test_pairs_side_by_side_are_counted() -> None:
     corners = [
         corner
         for k in range(100)
         for corner in ((k * 1e-3, -k * 1e-3), (9 + k * 1e-3, 9 - k * 1e-3))
     ]
-    with pytest.raises(ss.InputError, match="1,000 pairs of arcs side by side"):
-        _ = ss.Shape.from_points(corners).boundary
+    shape = ss.Shape.from_points(corners)
+    with pytest.raises(ss.InputError, match=r"1,000 pairs of arcs side by side.*--limit pairs="):
+        _ = dataclasses.replace(shape, limits=ss.Limits(pairs=1000)).boundary
+    _ = shape.boundary
+
+
+def test_limits_are_those_of_one_reading(tmp_path: Path) -> None:
+    file = tmp_path / "a.wkt"
+    file.write_text("POLYGON((0 0,1 0,0 1))")
+    for limits in (ss.Limits(pieces=2), ss.Limits(bytes=5)):
+        with pytest.raises(ss.InputError):
+            ss.read(file, limits=limits)
+        assert ss.Shape.from_points(POINTS).limits == ss.Limits()
+        assert ss.read(file).limits == ss.Limits()
+    with pytest.raises(ss.InputError, match="limits such as"):
+        ss.read(file, limits={"pieces": 5})
+    with pytest.raises(ss.InputError, match="limits such as"):
+        dataclasses.replace(ss.read(file), limits=5)
+    for wrong in ({"pieces": 0}, {"bytes": 1.5}, {"nesting": 5000}, {"crossings": math.nan}):
+        with pytest.raises(ss.InputError, match=f"the limit '{min(wrong)}'"):
+            ss.Limits(**wrong)
+
+
+def test_the_usual_limits_are_those_of_the_docs() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "files.md").read_text()
+    rows = dict(re.findall(r"^\| `(\w+)` \|.*\| ([\d,]+) \|$", page, re.MULTILINE))
+    assert {name: int(number.replace(",", "")) for name, number in rows.items()} == (
+        dataclasses.asdict(ss.Limits())
+    )
 
 
 def test_uses_of_uses_are_counted(tmp_path: Path) -> None:
@@ -86,9 +169,7 @@ def test_uses_of_uses_are_counted(tmp_path: Path) -> None:
     content = (
         f"<svg><defs><rect id='a0' width='1' height='1'/>{groups}</defs><use href='#a9'/></svg>"
     )
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(svg_walk, "_MOST_DRAWN", 2000)
-        _refused(tmp_path / "a.svg", content, "at most 2,000 elements drawn")
+    _refused(tmp_path / "a.svg", content, "2,000 elements", limits=ss.Limits(elements=2000))
 
 
 def test_clips_within_clips_are_counted(tmp_path: Path) -> None:
@@ -99,21 +180,10 @@ def test_clips_within_clips_are_counted(tmp_path: Path) -> None:
         + "</g>" * 200
         + "</svg>"
     )
-    _refused(tmp_path / "a.svg", content, "clipped up to 100,000 times")
-
-
-@pytest.mark.parametrize(
-    ("names", "content", "expected"),
-    [
-        ("_MOST_TAGS", "<svg>" + "<g/>" * 200 + "</svg>", "up to 100 tags"),
-        ("_MOST_ATTRIBUTES", "<svg>" + "<g a='1' b='2'/>" * 80 + "</svg>", "up to 100 attributes"),
-    ],
-)
-def test_tags_and_attributes_are_counted(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, names: str, content: str, expected: str
-) -> None:
-    monkeypatch.setattr(svg_document, names, (100, expected.split()[-1]))
-    _refused(tmp_path / "a.svg", content, expected)
+    _refused(tmp_path / "a.svg", content, "up to 100,000 clips")
+    clip = "<clipPath id='c'><rect width='9' height='9'/></clipPath>"
+    group = "<g clip-path='url(#c)'><rect width='5' height='5'/><rect width='7' height='7'/></g>"
+    _limited(tmp_path / "b.svg", f"<svg>{clip}{group * 3}</svg>", "clips", 6)
 
 
 def test_rules_times_elements_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -123,26 +193,80 @@ def test_rules_times_elements_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_p
     _refused(tmp_path / "a.svg", content, "up to 1,000 matches of rules and elements")
 
 
-def test_a_packed_drawing_that_is_too_large(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+# Reads each file with so many more bytes of memory than it has, and so many seconds of processor.
+_READ = """
+import pathlib, resource, sys
+import splinesdf as ss
+triangle = ss.Shape.from_points([(0, 0), (1, 0), (0, 1)])
+ss.signed_distance(triangle, (0.0, 0.0))  # loads what is loaded when it is used
+have = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (have + int(sys.argv[1]), have + int(sys.argv[1])))
+resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
+for name in sys.argv[2:]:
+    try:
+        ss.signed_distance(ss.read(name, **({"text": "A"} if "woff" in name else {})), (0.0, 0.0))
+        print("read")
+    except ss.InputError as error:
+        print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is limited as Linux does it")
+def test_small_files_that_ask_for_much_are_refused_before_the_memory_is_gone(
+    tmp_path: Path,
 ) -> None:
-    monkeypatch.setattr(svg_document, "_MOST_UNPACKED", 1000)
-    content = gzip.compress(b"<svg>" + b" " * 2000 + b"</svg>")
-    _refused(tmp_path / "a.svgz", content, "up to 1,000 bytes")
+    dice = random.Random(1)
+    chords = " ".join(f"{dice.random():.3f} {dice.random():.3f}" for _ in range(3000))
+    files = {
+        "crossings.svg": (f"<svg><path d='M{chords}'/></svg>", "up to 300,000 crossings"),
+        "packed.svgz": (_packed(b"<svg>", 300_000_000), "up to 100,000,000 bytes, unpacked"),
+        "packed.woff": (_packed_font(300_000_000), "up to 100,000,000 bytes of a font"),
+        "deep.wkt": ("GEOMETRYCOLLECTION(" * 100_000, "up to 100 geometries"),
+        "deep.geojson": ("[" * 100_000, "expected GeoJSON"),
+        "entities.svg": ("<!DOCTYPE svg [<!ENTITY a 'aaaaaaaaaa'>" + "".join(
+            f"<!ENTITY {b} '&{a};&{a};&{a};&{a};&{a};&{a};'>" for a, b in pairwise("abcdefghijkl"))
+            + "]><svg>&l;</svg>", "entities that are plain texts"),
+    }  # fmt: skip
+    for name, (content, _) in files.items():
+        (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    with (tmp_path / "long.csv").open("wb") as file:
+        file.truncate(2**40)
+    names = [*files, "long.csv"]
+    command = [sys.executable, "-W", "error", "-c", _READ, "400000000"]
+    done = subprocess.run(
+        [*command, *(str(tmp_path / name) for name in names)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert not done.stderr
+    expected = [words for _, words in files.values()] + ["up to 50,000,000 bytes"]
+    for line, words in zip(done.stdout.splitlines(), expected, strict=True):
+        assert words in line
+
+
+def _packed(start: bytes, spaces: int, wbits: int = 31) -> bytes:
+    """Packed text that ends in many spaces; there is never all of it."""
+    pack = zlib.compressobj(1, wbits=wbits)
+    blocks = [pack.compress(b" " * 1_000_000) for _ in range(spaces // 1_000_000)]
+    return pack.compress(start) + b"".join(blocks) + pack.flush()
+
+
+def _packed_font(size: int) -> bytes:
+    """The header of a packed font, and a table that unpacks to so much."""
+    table = _packed(b"", size, wbits=15)
+    head = struct.pack(">4sIIHHIHHIIIII", b"wOFF", 0x10000, 64 + len(table), 1, *[0] * 9)
+    return head + struct.pack(">4sIIII", b"glyf", 64, len(table), size, 0) + table
 
 
 @pytest.mark.parametrize(
     "name", ["roboto-latin-400-normal.woff2", "noto-serif-latin-400-normal.woff"]
 )
-def test_a_packed_font_that_is_too_large(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str
-) -> None:
-    content = (FONTS / name).read_bytes()
-    monkeypatch.setattr(fonts_packed, "_MOST_UNPACKED", 10_000)
-    _refused(tmp_path / name, content, "packed font of up to 10,000 bytes", text="A")
+def test_a_packed_font_that_is_too_large(tmp_path: Path, name: str) -> None:
+    content, tight = (FONTS / name).read_bytes(), ss.Limits(expanded=10_000)
+    _refused(tmp_path / name, content, "up to 10,000 bytes of a font", text="A", limits=tight)
 
 
-def test_glyphs_within_glyphs_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_glyphs_within_glyphs_are_counted(tmp_path: Path) -> None:
     from fontTools.fontBuilder import FontBuilder
     from fontTools.pens.ttGlyphPen import TTGlyphPen
 
@@ -161,8 +285,8 @@ def test_glyphs_within_glyphs_are_counted(monkeypatch: pytest.MonkeyPatch, tmp_p
     builder.setupMaxp()
     plain = io.BytesIO()
     builder.save(plain)
-    monkeypatch.setattr(loops, "MOST_PIECES", 5000)
-    _refused(tmp_path / "a.ttf", plain.getvalue(), "at most 5,000 pieces", text="A")
+    tight = ss.Limits(pieces=5000)
+    _refused(tmp_path / "a.ttf", plain.getvalue(), "up to 5,000 pieces", text="A", limits=tight)
 
 
 @pytest.mark.parametrize("depth", [1, 6])
@@ -180,7 +304,17 @@ def test_arrays_of_blocks_are_counted(tmp_path: Path, depth: int) -> None:
     document.modelspace().add_blockref(f"B{depth - 1}", (0, 0), dxfattribs=count | space)
     document.saveas(tmp_path / "source.dxf")
     content = (tmp_path / "source.dxf").read_bytes()
-    _refused(tmp_path / "a.dxf", content, f"at most {dxf._MOST_ENTITIES:,} entities")
+    _refused(tmp_path / "a.dxf", content, "up to 200,000 entities")
+
+
+def test_entities_of_a_drawing_are_counted(tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    for k in range(7):
+        document.modelspace().add_circle((3 * k, 0), 1)
+    document.saveas(tmp_path / "source.dxf")
+    content = (tmp_path / "source.dxf").read_bytes()
+    _limited(tmp_path / "a.dxf", content, "elements", 7)
 
 
 def test_a_damaged_drawing_is_refused_in_words_that_can_be_printed(tmp_path: Path) -> None:

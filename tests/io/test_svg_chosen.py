@@ -91,7 +91,7 @@ def test_options_without_use_are_refused(tmp_path: Path, suffix: str) -> None:
 
 
 def test_all_options_are_tried_and_all_readers_listed() -> None:
-    assert set(GIVEN) == set(DEFAULTS) - {"fill", "close"}
+    assert set(GIVEN) == set(DEFAULTS) - {"fill", "close", "limits"}
     assert set(USED) == set(READERS)
 
 

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 import splinesdf as ss
 from splinesdf.io.remeasured import curves_in, measure_file
+from splinesdf.io.source_frame import Told
 
 # A part of 100 mm x 50 mm, in 378 units across: pixels of a screen.
 DRAWING = (
@@ -49,11 +50,12 @@ def test_lengths_are_what_was_drawn(
     assert contours[0].unit == part.unit
     ss.write(tmp_path / name, contours, units=units, arcs=arcs)
     assert_allclose(sides(tmp_path / name), [96.0 / millimeters, 46.0 / millimeters], rtol=1e-6)
-    worst = measure_file(tmp_path / name, part, [distance], 1e-3, units)
+    worst = measure_file(tmp_path / name, part, [distance], 1e-3, Told(units))
     assert worst.keeps(1.01e-3)
     # Told wrongly, it is seen.
     other = "mm" if units == "inch" else "inch"
-    assert measure_file(tmp_path / name, part, [distance], 1e-3, other).deviation > 1.0
+    with pytest.raises(ss.InputError, match=f"expected numbers in {other}"):
+        measure_file(tmp_path / name, part, [distance], 1e-3, Told(other))
 
 
 @pytest.mark.parametrize(

@@ -10,19 +10,14 @@ import numpy as np
 
 from splinesdf.arclets.interpolation import CHECKS, NODES, TO_CHECKS, TO_CONTROL
 from splinesdf.arclets.tables import Arclets, Interpolation, Met
-from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.ground.limits import limits_in_use, too_much
 
 # Steps between control points below this share of the arclet's size have no direction: at a
 # cusp they are rounding.
 _NO_STEP = 1e-12
 # Room for crossings at first; a drawing with more is searched once more with as much as it needs.
 _CAPACITY = 4096
-# Crossings, and pairs of arcs whose boxes overlap, of a drawing. Both may grow like the square of
-# what is drawn. More: minutes and gigabytes for what is most often a mistake (a thousand lines
-# across one another cross 230,000 times, which takes 20 s and 300 MB); fewer: large maps with
-# borders drawn twice are refused.
-_MOST = (300_000, 50_000_000)
 
 
 class Crossings(NamedTuple):
@@ -45,7 +40,7 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
     Raises
     ------
     InputError
-        If there are more than the memory is meant for.
+        If there are more, or more pairs of arcs side by side, than the limits in use.
     """
     from splinesdf.arclets.kernels import (
         crossings as intersections,  # Numba loads only when it is used
@@ -62,13 +57,13 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
         control=np.empty(len(TO_CONTROL)),
         spans=np.empty((intersections.DEPTH + 2, 2)),
     )
-    capacity = _CAPACITY
+    limits, capacity = limits_in_use(), _CAPACITY
     while True:
         met = Met(
             pair=np.empty((capacity, 2), dtype=np.int64),
             at=np.empty((capacity, 2)),
             found=np.zeros(2, dtype=np.int64),
-            most=np.array(_MOST, dtype=np.int64),
+            most=np.array([limits.crossings, limits.pairs], dtype=np.int64),
         )
         intersections.fill_crossings(
             arclets.boxes,
@@ -80,12 +75,15 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
             interpolation,
             met,
         )
-        if met.found[1]:
-            raise InputError(
-                f"expected contours with up to {_MOST[0]:,} crossings and touching places, and "
-                f"{_MOST[1]:,} pairs of arcs side by side, got more: draw fewer in one place"
-            )
         count = int(met.found[0])
+        many = count > limits.crossings
+        if many or met.found[1]:
+            raise too_much(
+                "crossings" if many else "pairs",
+                f"expected contours with up to {limits.crossings:,} crossings and touching places"
+                if many
+                else f"expected contours with up to {limits.pairs:,} pairs of arcs side by side",
+            )
         if count <= capacity:
             return Crossings(met.pair[:count], met.at[:count])
         capacity = count

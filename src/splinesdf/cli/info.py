@@ -42,6 +42,7 @@ def info(file: str, reading: dict[str, Any]) -> None:
             box=report.box_text(shape.box),
             y="downward" if shape.y_down else "upward",
             unit="not said" if shape.unit is None else f"{shape.unit:.6g} mm",
+            page="none" if shape.page is None else report.box_text(shape.page),
         )
 
 

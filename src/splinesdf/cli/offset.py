@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -20,10 +21,13 @@ from splinesdf.cli.shapes import (
     tolerance_option,
 )
 from splinesdf.distance.depth import deepest
+from splinesdf.ground.atomic import write_text
 from splinesdf.io.enclosed import check_sides
-from splinesdf.io.output import check_format
+from splinesdf.io.output import check_format, file_text
+from splinesdf.io.placing import CORNERS
 from splinesdf.io.remeasured import measure_file
-from splinesdf.io.writers.options import DIRECTIONS, GCODE, UNITS, factor
+from splinesdf.io.source_frame import Told
+from splinesdf.io.writers.options import DIRECTIONS, UNITS, Y_UP, factor, is_used
 from splinesdf.offsets.offset import least_tolerance
 
 # Shares of the tolerance for the offset; the file gets the rest. DXF without --arcs is exact; in
@@ -40,11 +44,19 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 @click.option("--coarse", is_flag=True, help="Allow a tolerance above a quarter of the distance.")
 @click.option("-d", "--distance", "distances", type=float, multiple=True, help="> 0: outward.")
 @click.option("--step", type=float, help="Inward, < 0: at STEP, 2 STEP, ... until nothing is left.")
-@click.option("-o", "--output", required=True, help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv")
+@click.option(
+    *("-o", "--output", "outputs"),
+    required=True,
+    multiple=True,
+    help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv; again for another file.",
+)
 @click.option("--arcs", is_flag=True, help="DXF, SVG: only lines and circular arcs.")
 @click.option(
     "--units", type=click.Choice(UNITS), help="DXF, G-code: what the numbers are. [G-code: mm]"
 )
+@click.option("--scale", type=float, default=1.0, help="Enlarge the numbers of the files.")
+@click.option("--origin", help="What becomes 0,0: lower-left, center, or a point X,Y of SHAPE.")
+@click.option("--flip/--no-flip", default=None, help="Mirror y, or not.  [as the file's axis asks]")
 @click.option("--feed", type=float, help="G-code: speed of cutting, in units a minute.")
 @click.option("--safe-height", type=float, help="G-code: Z between contours.  [default: 5]")
 @click.option("--depth", type=float, help="G-code: how deep to cut below Z = 0.  [default: 0]")
@@ -65,51 +77,108 @@ def offset(
     tolerance: float | None,
     distances: tuple[float, ...],
     step: float | None,
-    output: str,
+    outputs: tuple[str, ...],
     **flags: Any,
 ) -> None:
     """Write the trimmed offsets of SHAPE, at distances or in steps.
 
     What is written is within the tolerance of the distances, whatever the format. Lengths are in
     the shape's unit; DXF and G-code are converted if the shape says how long that is. They have y
-    pointing up: a shape from an SVG file is mirrored.
+    pointing up: a shape from an SVG file is mirrored about its page's height. After that --origin
+    is moved to 0,0, all is converted, and scaled. Several files (-o a.dxf -o a.svg) hold the same
+    contours, and each takes the options that its format can use.
     """
     if bool(distances) == (step is not None):
         got = "both" if distances else "neither"
         raise ss.InputError(f"expected either --distance (-d) or --step, got {got}: give one")
     source = read_shape(shape, reading)
     given = {name: flags[name] for name in _MILLING if flags[name] is not None}
-    arcs = flags["arcs"]
     options: dict[str, Any] = {
-        "arcs": arcs,
+        "arcs": flags["arcs"],
         "units": flags["units"],
         "milling": ss.Milling(**given) if given else None,
+        "scale": flags["scale"],
+        "origin": _origin(flags["origin"]),
+        "flip": flags["flip"],
     }
-    suffix = check_format(output, **options)
-    check_outputs(shape, output)
+    files = _files(shape, outputs, options)
     asked = distances if step is None else (step,)
     tolerance = offset_tolerance_of(source, asked, tolerance, coarse=flags["coarse"])
-    share = _share(suffix, arcs)
+    # What several files hold is the same, so it is what the least exact of them has room for.
+    share = min(_share(suffix, flags["arcs"]) for suffix in map(_suffix, files))
     farthest = max(map(abs, distances), default=0.0)
     if tolerance < (least := least_tolerance(source, farthest) / share):
         raise ss.InputError(
-            f"expected a tolerance of at least {least:.2g} for {suffix}, above the rounding of the "
-            f"coordinates, got {tolerance:.4g}: raise it, or move the shape nearer to the origin"
+            f"expected a tolerance of at least {least:.2g} for {', '.join(map(_suffix, files))}, "
+            f"above the rounding of the coordinates, got {tolerance:.4g}: raise it, or move the "
+            "shape nearer to the origin"
         )
     contours = _contours(source, distances, step, tolerance, share)
     rest = (1.0 - share) * tolerance
-    ss.write(output, contours, tolerance=rest if rest > 0.0 else None, **options)
+    # All are made before one is written: what cannot be made leaves no file without the others.
+    texts = {
+        output: file_text(output, contours, tolerance=rest if rest > 0.0 else None, **used)
+        for output, used in files.items()
+    }
+    for output, text in texts.items():
+        write_text(output, text)
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
     off = report.print_offsets(source, contours, distances, tolerance)
-    report.print_written(output)
-    _say_units(source, suffix, flags["units"])
+    report.print_written(*files)
+    notes = [_about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
+    for note in filter(None, dict.fromkeys(notes)):
+        click.echo(f"note: {note}", err=True)
     passed = _keeps(off, tolerance)
     if flags["check"]:
         # At the step after the last nothing is to be left.
         ended = () if step is None else ((len(distances) + 1) * step,)
-        passed &= _check(output, source, contours, (*distances, *ended), tolerance, flags["units"])
+        for output, used in files.items():
+            told = Told(**{name: used[name] for name in Told._fields if name in used})
+            passed &= _check(output, source, contours, (*distances, *ended), tolerance, told)
     if not passed:
         raise click.exceptions.Exit(1)
+
+
+def _origin(text: str | None) -> str | tuple[float, ...] | None:
+    """The origin as `write` takes it."""
+    if text is None or text in CORNERS:
+        return text
+    try:
+        return tuple(map(float, text.split(",")))
+    except ValueError as error:
+        raise ss.InputError(
+            f"expected --origin as {', '.join(CORNERS)} or X,Y, got {text!r:.60}"
+        ) from error
+
+
+def _files(
+    shape: str, outputs: tuple[str, ...], options: dict[str, Any]
+) -> dict[str, dict[str, Any]]:
+    """Each file and the options that its format can use; all can be written, none is there twice.
+
+    Raises
+    ------
+    InputError
+        If one of them cannot be written, or an option is of use for none.
+    """
+    for name, value in options.items():
+        if value and not any(is_used(_suffix(output), name) for output in outputs):
+            check_format(outputs[0], **{name: value})
+    result, seen = {}, set[str]()
+    for output in outputs:
+        used = {key: value for key, value in options.items() if is_used(_suffix(output), key)}
+        check_format(output, **used)
+        place = os.path.realpath(output)
+        if place in seen:
+            raise ss.InputError(f"expected different files, got {output!r} twice: name another")
+        seen.add(place)
+        result[output] = used
+    check_outputs(shape, *outputs)
+    return result
+
+
+def _suffix(output: str) -> str:
+    return Path(output).suffix.lower()
 
 
 def _share(suffix: str, arcs: bool) -> float:
@@ -182,19 +251,19 @@ def _keeps(off: float, tolerance: float) -> bool:
     return off <= tolerance
 
 
-def _say_units(source: ss.Shape, suffix: str, units: str | None) -> None:
+def _about_units(source: ss.Shape, suffix: str, units: str | None) -> str | None:
     """Say by how much the numbers of the file are larger, or that their unit is not known."""
-    if suffix not in GCODE | {".dxf"}:
-        return
-    if source.unit is None:
-        if units is not None or suffix in GCODE:
-            click.echo(
-                f"note: {source.name} does not say its unit: its numbers are written as they are, "
-                f"in {units or 'mm'}",
-                err=True,
-            )
-    elif (by := factor(suffix, source.unit, units)) != 1.0:
-        click.echo(f"note: converted to {units or 'mm'}: {by:.9g} a unit", err=True)
+    if suffix not in Y_UP:
+        return None
+    if source.unit is not None:
+        by = factor(suffix, source.unit, units)
+        return None if by == 1.0 else f"converted to {units or 'mm'}: {by:.9g} a unit"
+    if units is None and suffix == ".dxf":
+        return None
+    return (
+        f"{source.name} does not say its unit: its numbers are written as they are, in "
+        f"{units or 'mm'}"
+    )
 
 
 def _check(
@@ -203,12 +272,17 @@ def _check(
     contours: list[ss.Contour],
     distances: tuple[float, ...],
     tolerance: float,
-    units: str | None,
+    told: Told,
 ) -> bool:
     """Measure the file: whether its curves are within the tolerance, complete, and there once."""
     wanted = Counter(float(contour.distance) for contour in contours)
-    with working(f"reading {Path(output).name} back"):
-        worst = measure_file(output, source, sorted({*wanted, *distances}), tolerance, units)
+    every = sorted({*wanted, *distances})
+    try:
+        with working(f"reading {Path(output).name} back"):
+            worst = measure_file(output, source, every, tolerance, told, contours)
+    except ss.InputError as error:  # what was written is not what it should be
+        _complain(str(error))
+        return False
     report.print_check(output, worst, tolerance)
     if worst.curves != wanted:
         _complain(f"expected curves at {dict(wanted)}, read {worst.curves}")

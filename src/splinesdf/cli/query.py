@@ -42,7 +42,7 @@ def query(source: str, points: str, output: str | None, reading: dict[str, Any])
         def ask(at: Any) -> Any:
             return distance_and_gradient(shape, at)
 
-    at = read_points(points)
+    at = read_points(points, limits=reading["limits"])
     check_outputs(source, output)
     check_outputs(points, output)
     with working("computing distances"):

@@ -15,6 +15,7 @@ import splinesdf as ss
 from splinesdf.cli.report import working
 from splinesdf.ground.arrays import positive
 from splinesdf.ground.atomic import check_target
+from splinesdf.ground.limits import NAMES as LIMITS
 from splinesdf.io.readers.source import IGNORED, STROKES
 from splinesdf.offsets.offset import offset_tolerance
 from splinesdf.splines.json_form import is_fit
@@ -54,6 +55,7 @@ _READING: tuple[Callable[[Command], Command], ...] = (
     click.option("--size", type=float, help="Fonts: height of an em.  [default: the font's units]"),
     click.option("--axis", "location", multiple=True, help="Variable fonts: wght=650; again."),
     click.option("--columns", nargs=2, help="Tables: the columns of x and y, names or numbers."),
+    click.option("--limit", "limits", multiple=True, help="A larger limit: pieces=5e6; again."),
 )
 _NAMES = (
     "close",
@@ -68,6 +70,7 @@ _NAMES = (
     "text",
     "size",
     "location",
+    "limits",
 )
 
 
@@ -82,12 +85,26 @@ def reading_options(command: Command) -> Command:
             columns = reading["columns"]
             reading["columns"] = tuple(int(one) if one.isdigit() else one for one in columns)
         reading["location"] = dict(map(axis_of, reading["location"])) or None
+        reading["limits"] = _limits(reading["limits"])
         command(reading=reading, **given)
 
     bundled: Command = functools.wraps(command)(read_as)
     for option in _READING:
         bundled = option(bundled)
     return bundled
+
+
+def _limits(texts: Iterable[str]) -> ss.Limits:
+    given: dict[str, Any] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        if name not in LIMITS:
+            raise ss.InputError(f"expected a limit of {', '.join(LIMITS)}, got {text!r:.40}")
+        try:
+            given[name] = float(value)
+        except ValueError as error:
+            raise ss.InputError(f"expected a limit such as pieces=5e6, got {text!r:.40}") from error
+    return ss.Limits(**given)
 
 
 def axis_of(text: str) -> tuple[str, float]:

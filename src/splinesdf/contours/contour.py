@@ -9,7 +9,15 @@ from typing import Any
 import numpy as np
 
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import LARGEST, Floats, as_floats, finite, largest_coordinate, positive
+from splinesdf.ground.arrays import (
+    LARGEST,
+    Floats,
+    as_floats,
+    as_page,
+    finite,
+    largest_coordinate,
+    positive,
+)
 
 # A halving divides the sag of an arc by four, or by nearly two next to a cusp: so many are far more
 # than any tolerance above rounding takes. More change nothing; fewer would leave an arc coarse.
@@ -53,6 +61,9 @@ class Contour:
         tolerance, but has many arcs, and none of its lines, circles and corners are exact.
     unit : float, optional
         How many millimeters one unit of the coordinates is, as in the shape that it is of.
+    page : (xmin, ymin, xmax, ymax), optional
+        The page of the drawing that it is of, in the coordinates' unit. `write` mirrors y about
+        its height.
     """
 
     arcs: Floats
@@ -64,8 +75,10 @@ class Contour:
     tolerance: float | None = None
     fitted: bool = False
     unit: float | None = None
+    page: tuple[float, float, float, float] | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "page", as_page(self.page))
         if self.unit is not None:
             object.__setattr__(self, "unit", positive(self.unit, "unit"))
         for name in ("arcs", "weights"):
@@ -257,27 +270,44 @@ def evened(arcs: Floats, weights: Floats) -> tuple[Floats, Floats]:
 
 
 def box(contours: Iterable[Contour]) -> tuple[float, float, float, float]:
-    """A box around the contours, at most a few percent too large: xmin, ymin, xmax, ymax."""
-    hulls = []
-    for contour in contours:
-        arcs, weights = contour.arcs, contour.weights
-        for _ in range(3):
-            arcs, weights = halve(arcs, weights, np.ones(len(arcs), dtype=np.bool_))
-        hulls.append(arcs.reshape(-1, 2))
-    low, high = np.min([h.min(0) for h in hulls], 0), np.max([h.max(0) for h in hulls], 0)
+    """The smallest box around the contours, to rounding: xmin, ymin, xmax, ymax."""
+    reached = np.concatenate([_extremes(contour.arcs, contour.weights) for contour in contours])
+    low, high = reached.min(axis=0), reached.max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
-def upright(contour: Contour) -> Contour:
-    """The contour with y pointing up, as in DXF and G-code."""
-    return mirrored(contour) if contour.y_down else contour
+def _extremes(arcs: Floats, weights: Floats) -> Floats:
+    """Ends of arcs and points with a tangent along an axis: (n, 3, 2), (n,) -> (m, 2).
+
+    With u = t / (1 - t) the derivative is a + b u + c u², divided by what is positive.
+    """
+    first, w = arcs[:, 0], weights[:, None]
+    b = arcs[:, 2] - first
+    a = w * (arcs[:, 1] - first)
+    c = w * b - a
+    root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
+    q = -0.5 * (b + np.where(b < 0.0, -root, root))  # the larger one: nothing cancels
+    points = [arcs[:, 0], arcs[:, 2]]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # t = u / (1 + u) of the roots u = q / c and a / q; 0 / 0 where all is zero.
+        for t in (q / (q + c), a / (q + a)):
+            inner = np.where((t > 0.0) & (t < 1.0), t, 0.0)
+            for axis in (0, 1):
+                points.append(evaluate_each(arcs, weights, inner[:, axis]))
+    return np.concatenate(points)
 
 
-def mirrored(contour: Contour) -> Contour:
-    """The contour with y and its direction reversed: as the other kind of file shows it."""
+def mirrored(contour: Contour, about: float = 0.0) -> Contour:
+    """The contour with y mirrored, ``about - y``, so that it turns the other way.
+
+    A page is mirrored about its height if ``about`` is the sum of its upper and lower edge.
+    """
     # 0 - y, not -y: a zero stays a zero without a sign in front when it is printed.
-    arcs = np.stack([contour.arcs[..., 0], 0.0 - contour.arcs[..., 1]], axis=-1)
-    return replace(contour, arcs=arcs, y_down=not contour.y_down)
+    arcs = np.stack([contour.arcs[..., 0], about - contour.arcs[..., 1]], axis=-1)
+    page = contour.page
+    if page is not None:
+        page = page[0], about - page[3], page[2], about - page[1]
+    return replace(contour, arcs=arcs, y_down=not contour.y_down, page=page)
 
 
 def check_tolerance(tolerance: float, arcs: Floats) -> None:

@@ -14,6 +14,7 @@ from splinesdf.errors import InputError
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+Page = tuple[float, float, float, float]  # xmin, ymin, xmax, ymax
 
 # Coordinates up to this, and sizes down to its inverse: beyond, the products of four lengths that
 # the distance needs overflow or vanish, without a word.
@@ -107,6 +108,19 @@ def positive(value: float, name: str) -> float:
     if not (np.isfinite(number) and number > 0.0):
         raise InputError(f"expected a positive {name}, got {number:g}")
     return number
+
+
+def as_page(value: Any) -> Page | None:
+    """A page as xmin, ymin, xmax, ymax, or None if none is given; else an `InputError`."""
+    if value is None:
+        return None
+    sides = as_floats(value, "page")
+    if sides.shape != (4,):
+        raise InputError(f"expected a page of xmin, ymin, xmax, ymax, got {shown(value)}")
+    xmin, ymin, xmax, ymax = (finite(side, "page") for side in sides.tolist())
+    if not (xmin < xmax and ymin < ymax):
+        raise InputError(f"expected a page with an extent, xmin < xmax, got {shown(value)}")
+    return xmin, ymin, xmax, ymax
 
 
 def whole(value: Any, name: str, *, least: int, most: int | None = None) -> int:

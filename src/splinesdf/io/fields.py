@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Sequence
 
 from splinesdf.errors import InputError
 from splinesdf.ground.atomic import atomic_file
@@ -16,15 +16,15 @@ from splinesdf.splines.spline import SplineSDF
 FIELDS = frozenset({".vtu"})
 
 
-def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: dict[str, Any]) -> None:
+def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: Sequence[str]) -> None:
     """Write a spline, whole or not at all.
 
     Parameters
     ----------
     path : str or path
     spline : SplineSDF
-    given : dict
-        Options of `splinesdf.write` by name: none has a use here.
+    given : sequence of str
+        Options of `splinesdf.write` that were given: none has a use here.
 
     Raises
     ------
@@ -33,11 +33,11 @@ def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: dict[str
         or the file cannot be written.
     """
     suffix = check_field(path)
-    for name, value in given.items():
-        if value is not None and value is not False:
-            raise InputError(
-                f"expected {name} only for contours, got it for a spline and {suffix}: leave it out"
-            )
+    if given:
+        raise InputError(
+            f"expected {', '.join(given)} only for contours, got a spline for {suffix}: leave that "
+            "out"
+        )
     made = spline.made
     known = {} if made is None else {"error": made.error, "bound": made.bound}
     facts = {name: value for name, value in known.items() if value is not None}

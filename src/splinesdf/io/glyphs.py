@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 
 from splinesdf.errors import InputError
+from splinesdf.ground.limits import limits_in_use
 from splinesdf.io.input import content_of, named
 from splinesdf.io.readers.fonts_glyphs import FontGlyphs, font_glyphs
 from splinesdf.io.readers.source import Source, checked_options
@@ -44,4 +45,8 @@ def read_glyphs(
             raise InputError(
                 f"expected a font ending in {', '.join(FONTS)}, got {suffix or 'none'!r}"
             )
-        return font_glyphs(Source(file, content_of(file), file.stem, suffix), characters, place)
+        return font_glyphs(
+            Source(file, content_of(file, limits_in_use().bytes), file.stem, suffix),
+            characters,
+            place,
+        )

@@ -12,9 +12,12 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.limits import Limits, checked_limits, too_much, using
 from splinesdf.ground.paths import as_path, shortened
 from splinesdf.io.readers import READERS, USED
 from splinesdf.io.readers.points import read_blocks
+from splinesdf.io.readers.reading import Reading, united
+from splinesdf.io.readers.separate import separated
 from splinesdf.io.readers.source import (
     ReadOptions,
     Source,
@@ -23,10 +26,6 @@ from splinesdf.io.readers.source import (
     read_options,
 )
 from splinesdf.shapes.shape import Shape
-
-# Bytes of a file. More: minutes and gigabytes before the first distance; fewer: maps of whole
-# countries are refused.
-_LARGEST = 500_000_000
 
 
 @read_options
@@ -78,13 +77,16 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
         The height of an em of a font; its own units unless given.
     location : mapping of str to float, optional
         Where on the axes of a variable font, as ``{"wght": 650}``.
+    limits : Limits, optional
+        How much the file may ask for, where that is not the usual: ``Limits(pieces=5_000_000)``.
 
     Returns
     -------
     Shape
         Its ``notes`` name what the file holds beside it, such as texts, images or open paths, what
         is drawn again, and how long a drawing says that one unit is, if that is neither a
-        millimeter nor an inch; ``unit`` is that length in millimeters.
+        millimeter nor an inch; ``unit`` is that length in millimeters, ``page`` the viewBox of a
+        drawing, or its width and height.
 
     Raises
     ------
@@ -92,21 +94,81 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
         If a contour is open and ``close`` is not set. Open paths beside closed ones in a drawing
         are left out instead, and named in the notes.
     InputError
-        If the file is missing, cannot be read, or is not what its extension says.
+        If the file is missing, cannot be read, is not what its extension says, or asks for more
+        than a limit, which the message names.
     """
+    with _parts(path, options) as parts:
+        return united(parts)
+
+
+@read_options
+def read_all(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> list[Shape]:
+    """Read the elements of a file, one shape each; together they fill what `read` reads.
+
+    An element is
+
+    - of a drawing (SVG) what is drawn: fill and stroke together, cut to its clips;
+    - of GeoJSON a feature, or a geometry that is in none, of WKT a geometry;
+    - of JSON a loop, of a table or of airfoils a polygon, of a font a glyph that is placed;
+    - of DXF an outermost outline with what lies in it: joined edges have no other name.
+
+    Outlines of one file that are filled together may be holes in each other: closed lines of a
+    drawing, loops, polygons of a table. Those that overlap are one shape where they could cancel
+    each other: under even-odd, and under nonzero unless they run the same way around.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Other Parameters
+    ----------------
+    fill, close, stroke, ignore, layers, ids, stroke_color, gap, columns, text, size, location
+        As of `read`.
+
+    Returns
+    -------
+    list of Shape
+        In the file's order. Each ``name`` is there once: an element's id, else its label, else its
+        kind and number; of a glyph its characters. The ``notes`` are those of the file, then the
+        elements that the shape holds beside its own, then the elements that fill nothing by
+        themselves: those in no shape. So every element is a shape or is counted there.
+
+    Raises
+    ------
+    OpenContourError, InputError
+        As of `read`, and if no element fills anything.
+
+    Examples
+    --------
+    >>> names = [shape.name for shape in splinesdf.read_all("letters.svg")]  # doctest: +SKIP
+    """
+    with _parts(path, options) as parts:
+        return separated(parts)
+
+
+@contextmanager
+def _parts(path: str | os.PathLike[str], options: ReadOptions) -> Iterator[Reading]:
+    """What is in a file, and the file's name in front of every error, later ones too."""
     asked = checked_options(options)
-    with named(path) as file:
+    with using(asked.limits), named(path) as file:
         suffix = file.suffix.lower()
         if suffix not in READERS:
             raise InputError(
                 f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
             )
         check_used(asked, USED, suffix)
-        return READERS[suffix](Source(file, content_of(file), file.stem, suffix), asked)
+        content = content_of(file, asked.limits.bytes)
+        yield READERS[suffix](Source(file, content, file.stem, suffix), asked)
 
 
-def read_points(path: str | os.PathLike[str]) -> Floats:
+def read_points(path: str | os.PathLike[str], *, limits: Limits | None = None) -> Floats:
     """Points from a CSV file: two columns, with or without a header, blank lines skipped.
+
+    Parameters
+    ----------
+    path : str or path
+    limits : Limits, optional
+        Of these, how many bytes the file may have.
 
     Returns
     -------
@@ -118,15 +180,10 @@ def read_points(path: str | os.PathLike[str]) -> Floats:
     InputError
         If the file cannot be read or a line is not two numbers.
     """
+    most = checked_limits(limits).bytes
     with named(path) as file:
-        return np.concatenate(
-            [
-                points
-                for _, points in read_blocks(
-                    Source(file, content_of(file), file.stem, file.suffix).text(), finite=False
-                )
-            ]
-        )
+        text = Source(file, content_of(file, most), file.stem, file.suffix).text()
+        return np.concatenate([points for _, points in read_blocks(text, finite=False)])
 
 
 @contextmanager
@@ -148,18 +205,18 @@ def named(path: str | os.PathLike[str]) -> Iterator[Path]:
         raise type(error)(f"{name if name.isprintable() else repr(name)}: {words}") from error
 
 
-def content_of(file: Path) -> bytes:
-    """All of a file, or an `InputError`."""
+def content_of(file: Path, most: int) -> bytes:
+    """All of a file of up to so many bytes, or an `InputError`."""
     try:
         if file.exists() and not file.is_file():
             # Reading from a pipe or a device might never end.
             raise InputError("expected a regular file, got a pipe or a device")
-        if file.stat().st_size > _LARGEST:
-            raise InputError(
-                f"expected a file of up to {_LARGEST:,} bytes, got {file.stat().st_size:,}: leave "
-                "out what is not needed"
-            )
-        return file.read_bytes()
+        length = file.stat().st_size
+        with file.open("rb") as opened:
+            content = opened.read(most + 1) if length <= most else b""
+        if length > most or len(content) > most:  # it may have grown since
+            raise too_much("bytes", f"expected a file of up to {most:,} bytes, got {length:,}")
+        return content
     except FileNotFoundError as error:
         raise InputError(f"the file does not exist in {str(file.parent)!r}") from error
     except OSError as error:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import replace
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
 from splinesdf.contours.contour import Contour, box, check_tolerance, smallest_tolerance
 from splinesdf.errors import InputError
 from splinesdf.ground.atomic import write_text
+from splinesdf.ground.options import check_known, with_options
 from splinesdf.ground.paths import as_path
 from splinesdf.io.fields import FIELDS, write_field
+from splinesdf.io.placing import Placement, placed
 from splinesdf.io.writers import WRITERS
 from splinesdf.io.writers.options import Milling, Options, check_options, factor
 from splinesdf.splines.spline import SplineSDF
@@ -20,16 +22,41 @@ from splinesdf.splines.spline import SplineSDF
 # The default tolerance as a share of the contours' size: far below what a machine cuts or a
 # screen shows, while a circle still takes only about 2000 chords.
 _DEFAULT_TOLERANCE = 1e-6
+# Contours whose coordinates are rounded by more than this share of their size, once they are moved
+# in the file, are refused. Larger: curves come out as steps; smaller: far origins are refused that
+# nobody would see.
+_MOVED = 1e-6
 
 
+class WriteOptions(TypedDict, total=False):
+    """The options of `write`, which says what they mean."""
+
+    tolerance: float | None
+    arcs: bool
+    units: str | None
+    milling: Milling | None
+    scale: float
+    origin: str | tuple[float, float] | None
+    flip: bool | None
+
+
+DEFAULTS: WriteOptions = {
+    "tolerance": None,
+    "arcs": False,
+    "units": None,
+    "milling": None,
+    "scale": 1.0,
+    "origin": None,
+    "flip": None,
+}
+write_options = with_options(WriteOptions, DEFAULTS)
+
+
+@write_options
 def write(
     path: str | os.PathLike[str],
     contours: Iterable[Contour] | SplineSDF,
-    *,
-    tolerance: float | None = None,
-    arcs: bool = False,
-    units: str | None = None,
-    milling: Milling | None = None,
+    **options: Unpack[WriteOptions],
 ) -> None:
     """Write contours, or the field of a spline, to a file, whole or not at all.
 
@@ -45,14 +72,15 @@ def write(
         ``.csv``                 points
         ``.vtu``                 a spline: exact, on quadratic triangles (`SplineSDF.triangles`)
         ======================== ===========================================================
-
-        DXF and G-code have y pointing up, SVG pointing down: contours are mirrored where the
-        source has it the other way. The others hold the coordinates as they are.
     contours : iterable of Contour, or SplineSDF
         A spline takes none of the options.
+
+    Other Parameters
+    ----------------
     tolerance : float, optional
-        How far the file may be from the contours, where it is not exact. Default: 1e-6 of the
-        larger side of the contours' box, or the rounding of the coordinates if that is more.
+        How far the file may be from the contours, where it is not exact, in their unit: the file's
+        own is scaled as its numbers are. Default: 1e-6 of the larger side of the contours' box, or
+        the rounding of the coordinates if that is more.
     arcs : bool
         DXF and SVG: only lines and circular arcs, as G-code always has (see `as_arcs`).
     units : {"mm", "inch"}, optional
@@ -62,36 +90,83 @@ def write(
         is not known. Distances that name layers stay in the contours' unit.
     milling : Milling, optional
         G-code: feed, heights, start and direction.
+    scale : float
+        The file's numbers are so many times as large.
+    origin : {"lower-left", "center"} or (float, float), optional
+        What becomes (0, 0): the corner with the least x and y, as the file has them, of the box of
+        all that is written; its center; or a point of the contours' coordinates.
+    flip : bool, optional
+        Mirror y, or do not. Default: as the file's axis asks. In DXF and G-code y points up, in SVG
+        down; contours are mirrored if their source has it the other way. The other formats have no
+        axes: there nothing is mirrored unless asked for.
+
+    Notes
+    -----
+    From the contours' coordinates to the file's numbers, in this order:
+
+    1. Where y is mirrored, it becomes ``top + bottom - y`` of the page (`Contour.page`), so that
+       the page's lower edge comes to where its upper edge was; ``-y`` if the source has no page.
+    2. ``origin`` is moved to (0, 0), a point being mirrored as the contours are.
+    3. All is converted to ``units``.
+    4. All is multiplied by ``scale``.
 
     Raises
     ------
     InputError
         If the extension is unknown, there is nothing to write, the format cannot use an option,
-        the tolerance is not positive or below rounding, or the file cannot be written.
+        the tolerance is not positive or below rounding, also where ``origin`` moves it, or the file
+        cannot be written.
     MissingExtraError
         For ``.dxf`` without ezdxf.
     """
+    check_known("write", options, WriteOptions)
     if isinstance(contours, SplineSDF):
-        given = {"tolerance": tolerance, "arcs": arcs, "units": units, "milling": milling}
+        defaults: dict[str, Any] = {**DEFAULTS}
+        given = [name for name, value in options.items() if value is not defaults[name]]
         return write_field(path, contours, given)
-    suffix = check_format(path, arcs=arcs, units=units, milling=milling)
+    write_text(path, file_text(path, contours, **options))
+
+
+def file_text(
+    path: str | os.PathLike[str], contours: Iterable[Contour], **options: Unpack[WriteOptions]
+) -> str:
+    """What `write` writes."""
+    check_known("write", options, WriteOptions)
+    asked: dict[str, Any] = {**DEFAULTS, **options}
+    tolerance = asked.pop("tolerance")
+    suffix, placement = check_format(path, **asked)
     chains = _as_contours(contours)
     xmin, ymin, xmax, ymax = box(chains)
     size = max(xmax - xmin, ymax - ymin)
     if size == 0.0:
         raise InputError("expected contours with an extent, got a single point")
-    every = np.concatenate([chain.arcs for chain in chains])
-    if tolerance is None:
-        # Of a small contour far from the origin, that is below what its coordinates hold.
-        tolerance = max(_DEFAULT_TOLERANCE * size, smallest_tolerance(every))
-    check_tolerance(tolerance, every)
-    unit = _unit_of(chains)
+    unit, units = _unit_of(chains), asked["units"]
     by = factor(suffix, unit, units)
     if by != 1.0:
-        chains = [replace(chain, arcs=by * chain.arcs, unit=unit) for chain in chains]
         units = units or "mm"
-    options = Options(float(by * tolerance), bool(arcs), units, milling, unit)
-    write_text(path, WRITERS[suffix](chains, options))
+    there, mirrors = placed(chains, suffix, placement, by)
+    by *= placement.scale
+    tolerance = _tolerance(chains, there, by, size, tolerance)
+    told = Options(by * tolerance, bool(asked["arcs"]), units, asked["milling"], unit, mirrors)
+    return WRITERS[suffix](there, told)
+
+
+def _tolerance(
+    chains: list[Contour], there: list[Contour], by: float, size: float, given: float | None
+) -> float:
+    """The tolerance in the contours' unit, which rounding where they are placed must allow."""
+    before, after = (np.concatenate([c.arcs for c in some]) for some in (chains, there))
+    least = smallest_tolerance(after) / by
+    # Of a small contour far from the origin, the default is below what its coordinates hold.
+    default = max(_DEFAULT_TOLERANCE * size, smallest_tolerance(before))
+    if given is not None:
+        check_tolerance(given, before)
+    if least > (max(default, _MOVED * size) if given is None else given):
+        raise InputError(
+            f"expected contours nearer to the file's (0, 0): their coordinates there are rounded "
+            f"by {least:.2g}, choose another origin" + ("" if given is None else " or tolerance")
+        )
+    return max(default, least) if given is None else float(given)
 
 
 def _unit_of(chains: list[Contour]) -> float | None:
@@ -108,8 +183,17 @@ def check_format(
     arcs: bool = False,
     units: str | None = None,
     milling: Milling | None = None,
-) -> str:
-    """The extension, in lower case, or an `InputError` if no such file can be written."""
+    scale: float = 1.0,
+    origin: str | tuple[float, float] | None = None,
+    flip: bool | None = None,
+) -> tuple[str, Placement]:
+    """The extension, in lower case, and where the file's numbers lie.
+
+    Raises
+    ------
+    InputError
+        If no such file can be written.
+    """
     suffix = as_path(path).suffix.lower()
     if suffix in FIELDS:
         raise InputError(
@@ -121,7 +205,7 @@ def check_format(
             f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"
         )
     check_options(suffix, arcs=arcs, units=units, milling=milling)
-    return suffix
+    return suffix, Placement(scale, origin, flip)
 
 
 def _as_contours(contours: Iterable[Contour]) -> list[Contour]:

@@ -23,12 +23,14 @@ from xml.etree import ElementTree
 import numpy as np
 
 from splinesdf.arclets.points import evaluate_bezier
+from splinesdf.contours.contour import Contour
 from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.paths import as_path
 from splinesdf.io.enclosed import Sides, check_sides, flattened
-from splinesdf.io.writers.options import GCODE, factor
+from splinesdf.io.source_frame import Frame, Told, frame_of
+from splinesdf.io.writers.options import GCODE
 from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.svg_path import parse_path
 
@@ -97,7 +99,8 @@ def measure_file(
     shape: Shape,
     distances: Sequence[float],
     tolerance: float,
-    units: str | None = None,
+    told: Told | None = None,
+    written: Sequence[Contour] = (),
 ) -> Worst:
     """Read a file of contours back and measure it against the exact distance to the shape.
 
@@ -111,40 +114,43 @@ def measure_file(
         place for it, so there each curve counts for the nearest of these.
     tolerance : float
         How far points must be from the level for their side of the curves to count.
-    units : {"mm", "inch"}, optional
-        As `write` was told.
+    told : Told, optional
+        How `write` was told to place them. The file is judged in the shape's coordinates.
+    written : sequence of Contour
+        All that the file holds: needed where the origin is a corner of their box, or its center.
 
     Raises
     ------
     InputError
-        If the file cannot be read or holds no curve.
+        If the file cannot be read, holds no curve, or declares another unit than asked for.
     """
     curves = curves_in(path)
-    suffix = as_path(path).suffix.lower()
     if not curves:
         raise InputError(f"{os.fspath(path)}: expected at least one curve, found none")
-    # y points up in DXF and G-code and down in SVG; the others hold it as the shape has it.
-    flip = shape.y_down if suffix in GCODE | {".dxf"} else suffix == ".svg" and not shape.y_down
-    by = factor(suffix, shape.unit, units)
-    sides = np.array([1.0, -1.0 if flip else 1.0]) / by
+    frame = frame_of(as_path(path), shape, told or Told(), written, tolerance)
+    by = frame.by
     worst, where, gap = (-1.0, math.nan), (math.nan, math.nan), 0.0
     no_extent = 0
     lines: dict[float, list[Floats]] = {}
     for curve in curves:
         level = curve.distance
         if math.isnan(level):
-            first = float(signed_distance(shape, curve.at(np.zeros(1)) * sides)[0])
+            first = float(signed_distance(shape, frame.to_source(curve.at(np.zeros(1))))[0])
             level = float(distances[int(np.argmin(np.abs(np.asarray(distances) - first)))])
         line = flattened(curve.at, curve.count, by * tolerance)
-        lines.setdefault(level, []).append(line * sides)
+        lines.setdefault(level, []).append(frame.to_source(line))
         gap = max(gap, math.dist(line[0], line[-1]) / by)
         no_extent += float(np.ptp(line, axis=0).max()) <= _ULPS * np.spacing(np.abs(line).max())
-        found, point = _worst_of(curve, level, shape, sides)
+        found, point = _worst_of(curve, level, shape, frame)
         if not found <= worst[0]:
             worst, where = (found, level), point
     checked = [
         check_sides(
-            shape, level, lines.get(level, []), tolerance, _turn(as_path(path), level, flip)
+            shape,
+            level,
+            lines.get(level, []),
+            tolerance,
+            _turn(as_path(path), level, frame.mirrored),
         )
         for level in dict.fromkeys([*map(float, distances), *lines])
     ]
@@ -153,7 +159,7 @@ def measure_file(
         {level: len(some) for level, some in lines.items()},
         gap,
         int(no_extent),
-        tuple(replace(c, point=(c.point[0] / sides[0], c.point[1] / sides[1])) for c in checked),
+        tuple(replace(sides, point=frame.to_file(sides.point)) for sides in checked),
     )
 
 
@@ -161,7 +167,8 @@ def _turn(file: Path, distance: float, flip: bool) -> int:
     """Which way around, in the shape's coordinates, curves are to run; 0 if it does not matter."""
     suffix = file.suffix.lower()
     if suffix == ".geojson":
-        return 1  # RFC 7946: outer rings from x to y, holes the other way
+        # RFC 7946: outer rings from x to y, holes the other way.
+        return -1 if flip else 1
     if suffix not in GCODE:
         return 0
     # What stays is the shape if the way is around it; climb milling has it on the right.
@@ -177,13 +184,15 @@ def curves_in(path: str | os.PathLike[str]) -> list[Curve]:
 
 
 def _worst_of(
-    curve: Curve, level: float, shape: Shape, sides: Floats
+    curve: Curve, level: float, shape: Shape, frame: Frame
 ) -> tuple[float, tuple[float, float]]:
     """The largest deviation along a curve, and its point."""
 
     def off(at: Floats) -> tuple[Floats, Floats]:
         points = curve.at(at.ravel())
-        return np.abs(signed_distance(shape, points * sides) - level).reshape(at.shape), points
+        return np.abs(signed_distance(shape, frame.to_source(points)) - level).reshape(
+            at.shape
+        ), points
 
     at = np.linspace(0.0, float(curve.count), _SAMPLES * curve.count + 1)
     apart, _ = off(at)

@@ -80,6 +80,7 @@ def contours_at(
             distance=distance,
             y_down=shape.y_down,
             unit=shape.unit,
+            page=shape.page,
         )
         for a, b in pairwise(fit.first)
     ]

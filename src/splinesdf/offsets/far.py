@@ -83,7 +83,12 @@ def hull_offset(shape: Shape, distance: float, tolerance: float) -> Contour:
     every[lines, 1] = 0.5 * (every[lines, 0] + every[lines, 2])
     every += shape.boundary.origin
     return Contour(
-        every, np.array(weights), distance=distance, y_down=shape.y_down, unit=shape.unit
+        every,
+        np.array(weights),
+        distance=distance,
+        y_down=shape.y_down,
+        unit=shape.unit,
+        page=shape.page,
     )
 
 

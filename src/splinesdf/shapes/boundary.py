@@ -105,6 +105,19 @@ def filled_boundary(outline: Arclets, least: int, largest: float) -> Arclets | N
     return _rebuild(outline, parts, keep[chains], left[chains], touching)
 
 
+def some_boundary(outline: Arclets, fill: str, largest: float) -> Arclets:
+    """The same by the name of the fill rule, or an `InputError` if nothing is filled."""
+    found = filled_boundary(outline, 0 if fill == "evenodd" else 1, largest)
+    if found is None:
+        other = "nonzero" if fill == "evenodd" else "evenodd"
+        raise InputError(
+            f"the contours fill nothing under the rule {fill!r}: they are traced to and fro, or "
+            "twice, or nowhere wider than the rounding of their coordinates, "
+            f"{touching_of(largest):.2g}; draw each once, or try fill={other!r}"
+        )
+    return found
+
+
 def _cut_in_vain(outline: Arclets, parts: Parts, keep: Bools, left: Bools, near: float) -> Bools:
     """Which chains go on, on the same arclet, from where only the one before it is kept as well.
 

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf.errors import InputError, OpenContourError
 from splinesdf.ground.arrays import LARGEST, NOTHING, Floats, as_points, largest_coordinate
+from splinesdf.ground.limits import check_limit
+
+Fill = Literal["nonzero", "evenodd"]
 
 # Neighbouring pieces meet to rounding; a gap up to this share of the shape's largest
 # coordinate is closed by moving an end point by that much. Larger: real gaps would vanish unseen.
@@ -21,17 +25,19 @@ PRINTED_GAP = 1e-6
 # Sizes below this share of the coordinates are refused. Smaller: arcs and transforms are rounded by
 # what can be seen of a shape.
 _LOST = 1e-9
-# Pieces of a shape. More: a kilobyte and ten microseconds each, before the first distance; fewer:
-# maps of whole countries are refused.
-MOST_PIECES = 1_000_000
 # A curve whose control points are within this share of the largest coordinate of the line through
 # its ends is that line: what differs is rounding. Larger: flat curves lose their bulge; smaller:
 # curves that run to and fro along a line keep arcs that only rounding gives a side.
 _STRAIGHT = 4 * 2.220446049250313e-16
 
 
-class TooMuch(InputError):
-    """More than a shape may have: no error of one element that others may stand beside."""
+def fill_rule(fill: str) -> Fill:
+    """The fill rule, or an `InputError`."""
+    if fill == "nonzero":
+        return "nonzero"
+    if fill == "evenodd":
+        return "evenodd"
+    raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r}")
 
 
 def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[list[Floats]]:
@@ -64,6 +70,7 @@ def closed_loops(loops: Iterable[Sequence[ArrayLike]], *, close: bool) -> list[l
             closed.append(pieces)
     if not closed:
         raise InputError("expected a curve that encloses something, got only points")
+    check_count(sum(map(len, closed)))
     return closed
 
 
@@ -95,11 +102,7 @@ def extent(loops: Sequence[Sequence[Floats]]) -> tuple[float, float]:
 
 def check_count(count: int) -> None:
     """Refuse more pieces than a shape may have, before there are tables of them."""
-    if count > MOST_PIECES:
-        raise TooMuch(
-            f"expected at most {MOST_PIECES:,} pieces and corners, got more: leave out what is not "
-            "needed, or simplify it"
-        )
+    check_limit("pieces", count, "pieces and corners")
 
 
 def check_place(size: float, largest: float, whose: str = "its") -> None:

@@ -60,6 +60,22 @@ def union(regions: Sequence[Loops]) -> Loops:
     return _filled([loop for loops in regions for loop in loops], 1)
 
 
+def united_regions(parts: Sequence[tuple[Loops, str | None]]) -> tuple[Loops, str]:
+    """Loops around the union of regions, and the rule under which they are.
+
+    Parameters
+    ----------
+    parts : sequence of (loops, rule)
+        The loops of each region, and the rule by which they fill it: None if they have the inside
+        on their left already. Those of a single one are left as they are.
+    """
+    if len(parts) == 1:
+        loops, rule = parts[0]
+        return loops, rule or "nonzero"
+    regions = [loops if rule is None else region(loops, rule) for loops, rule in parts]
+    return [loop for loops in regions for loop in loops], "nonzero"
+
+
 def _filled(loops: Sequence[Sequence[Floats]], least: int) -> Loops:
     """Loops around where the winding number is at least so much, or odd for 0."""
     if not any(len(loop) for loop in loops):

@@ -82,7 +82,7 @@ def first_of_each(loops: Sequence[Sequence[Floats]]) -> Ints:
     near = _COINCIDE * largest_coordinate(every)
     center = 0.5 * (every.min(axis=0) + every.max(axis=0))
     moved = [[p - center for p in loop if np.any(p != p[0])] for loop in loops]
-    sums = _sums(moved)
+    sums = moments_of(moved)
     length, reach = sums[:, 3], sums[:, 4]
     room = _ROOM * near * np.stack([length, length * reach, length * reach], axis=1)
     # The first that is not zero tells the direction; a line to and fro, of which none is, fills
@@ -108,7 +108,7 @@ def first_of_each(loops: Sequence[Sequence[Floats]]) -> Ints:
     return result
 
 
-def _sums(loops: Sequence[Sequence[Floats]]) -> Floats:
+def moments_of(loops: Sequence[Sequence[Floats]]) -> Floats:
     """Area and first moments of what contours enclose, length, and how far they reach: (n, 5).
 
     They do not depend on where a contour starts and is cut; the first three change sign with its

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, SupportsIndex
+from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,9 +19,10 @@ from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
-from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, Ints, as_points, finite, positive, whole
-from splinesdf.shapes.boundary import filled_boundary, kept_loops, touching_of
+from splinesdf.ground.arrays import Floats, Ints, Page, as_page, as_points, finite, positive, whole
+from splinesdf.ground.limits import Limits, checked_limits, limits_in_use, using
+from splinesdf.shapes.boundary import kept_loops, some_boundary
+from splinesdf.shapes.loops import Fill, fill_rule
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 from splinesdf.shapes.sources.compiled import compile_curve, point_loops
 from splinesdf.shapes.sources.conics import contour_loops
@@ -30,8 +31,6 @@ from splinesdf.shapes.sources.geojson import polygons_of
 from splinesdf.shapes.sources.nurbs import nurbs_pieces
 from splinesdf.shapes.sources.sections import compile_sections
 from splinesdf.shapes.sources.svg_path import parse_path
-
-Fill = Literal["nonzero", "evenodd"]
 
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
@@ -63,6 +62,12 @@ class Shape:
         What was left out or mended, one line each.
     unit : float or None
         How many millimeters one unit of the coordinates is, if the source says.
+    page : (xmin, ymin, xmax, ymax) or None
+        The page of a drawing, in the coordinates' unit, if the source has one. `write` mirrors y
+        about its height.
+    limits : Limits
+        How many crossings its contours may have, which are found when first a distance is asked
+        for: those that it was read with. ``dataclasses.replace(shape, limits=...)`` has others.
     """
 
     control: Floats
@@ -73,9 +78,13 @@ class Shape:
     name: str = ""
     notes: tuple[str, ...] = field(default=())
     unit: float | None = None
+    page: Page | None = None
+    limits: Limits = field(default_factory=limits_in_use, repr=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "page", as_page(self.page))
         object.__setattr__(self, "control", as_points(self.control))
+        object.__setattr__(self, "limits", checked_limits(self.limits))
         if self.unit is not None:
             object.__setattr__(self, "unit", positive(self.unit, "unit"))
 
@@ -91,6 +100,7 @@ class Shape:
         notes: tuple[str, ...] = (),
         once: bool | None = None,
         unit: float | None = None,
+        page: Page | None = None,
     ) -> Shape:
         """Assemble a shape from loops of Bézier pieces of any degree.
 
@@ -108,6 +118,8 @@ class Shape:
             twice. True unless ``fill`` is given, which then decides.
         unit : float, optional
             Millimeters that one unit of the coordinates is.
+        page : (xmin, ymin, xmax, ymax), optional
+            The page of a drawing.
 
         Raises
         ------
@@ -117,7 +129,7 @@ class Shape:
             If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
             the coordinates, nothing is left, or ``fill`` is unknown.
         """
-        rule = _fill_rule("nonzero" if fill is None else fill)
+        rule = fill_rule("nonzero" if fill is None else fill)
         closed, lost = kept_loops(loops, close=close)
         # By itself, a contour fills the same under nonzero however often it is traced.
         if (fill is None if once is None else once) and (len(closed) > 1 or rule == "evenodd"):
@@ -133,6 +145,7 @@ class Shape:
             name=name,
             notes=(*notes, *lost),
             unit=unit,
+            page=page,
         )
 
     @classmethod
@@ -264,7 +277,8 @@ class Shape:
         given = list(contours)
         y_down = any(getattr(contour, "y_down", False) for contour in given)
         loops, unit = contour_loops(given), getattr(given[0], "unit", None)
-        return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit)
+        page = getattr(given[0], "page", None)
+        return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit, page=page)
 
     @classmethod
     def from_shapely(cls, geometry: object, *, name: str = "") -> Shape:
@@ -330,18 +344,11 @@ class Shape:
         Raises
         ------
         InputError
-            If nothing is filled: every contour is traced to and fro, or twice under "evenodd".
+            If nothing is filled: every contour is traced to and fro, or twice under "evenodd";
+            or if the contours cross more often than ``limits`` says.
         """
-        largest = float(np.abs(self.control).max())
-        found = filled_boundary(self.arclets, 0 if self.fill == "evenodd" else 1, largest)
-        if found is None:
-            other = "nonzero" if self.fill == "evenodd" else "evenodd"
-            raise InputError(
-                f"the contours fill nothing under the rule {self.fill!r}: they are traced to and "
-                "fro, or twice, or nowhere wider than the rounding of their coordinates, "
-                f"{touching_of(largest):.2g}; draw each once, or try fill={other!r}"
-            )
-        return found
+        with using(self.limits):
+            return some_boundary(self.arclets, self.fill, float(np.abs(self.control).max()))
 
     @cached_property
     def bends(self) -> Bends:
@@ -389,11 +396,3 @@ class Shape:
         """
         count = whole(count, "count", least=1, most=_MOST_SAMPLES)
         return sampled_loops(self.control, self.starts, self.loops, count)
-
-
-def _fill_rule(fill: str) -> Fill:
-    if fill == "nonzero":
-        return "nonzero"
-    if fill == "evenodd":
-        return "evenodd"
-    raise InputError(f"expected fill 'nonzero' or 'evenodd', got {fill!r}")

@@ -8,7 +8,7 @@
     control, starts,   of the shape, if the fit has one, as in `Shape`
     loops
     about              JSON as UTF-8: name and y_down, which the shape shares with the fit, its
-                       fill rule and notes, the provenance, and the element's name
+                       fill rule, notes, unit and page, the provenance, and the element's name
 
 The file is an ``.npz`` of these arrays, or ``.json`` (see `json_form`).
 
@@ -135,7 +135,12 @@ def _fields(archive: Archive) -> Fields:
         "y_down": bool(archive.y_down),
         "shape": None
         if shape is None
-        else {"fill": shape.fill, "notes": list(shape.notes), "unit": shape.unit},
+        else {
+            "fill": shape.fill,
+            "notes": list(shape.notes),
+            "unit": shape.unit,
+            "page": None if shape.page is None else list(shape.page),
+        },
         "made": None if made is None else dataclasses.asdict(made),
         "element": archive.element.name,
     }
@@ -165,6 +170,8 @@ def _checked(fields: Fields) -> Archive:
         said = said | {"element": QUADRATIC.name}
         if isinstance(said.get("shape"), dict):
             said["shape"] = said["shape"] | {"unit": None}
+    if isinstance(said, dict) and isinstance(said.get("shape"), dict):
+        said["shape"] = {"page": None} | said["shape"]  # files made before pages were known
     about = _members(said, {"name", "y_down", "shape", "made", "element"}, "about")
     element = find_element(about["element"])
     space_on(mesh, element)  # refuses what has no such B-splines
@@ -221,7 +228,7 @@ def _shape(fields: Fields, about: object, name: str, y_down: bool) -> Shape | No
         if have := sorted(set(fields) & _SHAPE):
             raise InputError(f"expected no shape, got {have}")
         return None
-    words = _members(about, {"fill", "notes", "unit"}, "shape")
+    words = _members(about, {"fill", "notes", "unit", "page"}, "shape")
     fill, notes, unit = words["fill"], _typed(words["notes"], list, "notes"), words["unit"]
     if unit is not None:
         unit = positive(unit, "unit")
@@ -247,6 +254,7 @@ def _shape(fields: Fields, about: object, name: str, y_down: bool) -> Shape | No
         name=name,
         notes=tuple(_typed(note, str, "a note") for note in notes),
         unit=unit,
+        page=None if words["page"] is None else _typed(words["page"], list, "page"),
     )
 
 

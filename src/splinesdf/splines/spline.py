@@ -246,8 +246,10 @@ class SplineSDF:
         """
         self._check_quadratic("another for level sets")
         found = contours(self.mesh, self.ordinates, level, y_down=self.y_down)
-        unit = None if self.shape is None else self.shape.unit
-        return nested([replace(contour, unit=unit) for contour in found])
+        if self.shape is not None:
+            unit, page = self.shape.unit, self.shape.page
+            found = [replace(contour, unit=unit, page=page) for contour in found]
+        return nested(found)
 
     def triangles(self) -> Triangles:
         """The spline as a conforming mesh of quadratic Lagrange triangles, exact to rounding.

@@ -1,20 +1,20 @@
-"""Readers by extension: a file and the options of `splinesdf.read` in, a shape out."""
+"""Readers by extension: a file and the options of `splinesdf.read` in, its parts out."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from splinesdf.io.readers.airfoils import airfoil_shape
-from splinesdf.io.readers.dxf import dxf_shape
-from splinesdf.io.readers.fonts import font_shape
-from splinesdf.io.readers.formulas import json_shape
-from splinesdf.io.readers.maps import geojson_shape, wkt_shape
-from splinesdf.io.readers.points import points_shape
+from splinesdf.io.readers.airfoils import airfoil_reading
+from splinesdf.io.readers.dxf import dxf_reading
+from splinesdf.io.readers.fonts import font_reading
+from splinesdf.io.readers.formulas import json_reading
+from splinesdf.io.readers.maps import geojson_reading, wkt_reading
+from splinesdf.io.readers.points import points_reading
+from splinesdf.io.readers.reading import Reading
 from splinesdf.io.readers.source import Options, Source
-from splinesdf.io.readers.svg import svg_shape
-from splinesdf.shapes.shape import Shape
+from splinesdf.io.readers.svg import svg_reading
 
-Reader = Callable[[Source, Options], Shape]
+Reader = Callable[[Source, Options], Reading]
 
 # Options that some have a use for; `fill` and `close` all have.
 USED: dict[str, tuple[str, ...]] = {
@@ -29,13 +29,13 @@ USED: dict[str, tuple[str, ...]] = {
 }
 
 READERS: dict[str, Reader] = {
-    ".csv": points_shape,
-    ".dat": airfoil_shape,
-    ".dxf": dxf_shape,
-    ".geojson": geojson_shape,
-    ".json": json_shape,
-    ".svg": svg_shape,
-    ".svgz": svg_shape,
-    ".wkt": wkt_shape,
-    **dict.fromkeys((".otf", ".ttc", ".ttf", ".woff", ".woff2"), font_shape),
+    ".csv": points_reading,
+    ".dat": airfoil_reading,
+    ".dxf": dxf_reading,
+    ".geojson": geojson_reading,
+    ".json": json_reading,
+    ".svg": svg_reading,
+    ".svgz": svg_reading,
+    ".wkt": wkt_reading,
+    **dict.fromkeys((".otf", ".ttc", ".ttf", ".woff", ".woff2"), font_reading),
 }

@@ -13,16 +13,16 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
-from splinesdf.io.readers.points import is_number, lines_of, read_blocks
+from splinesdf.io.readers.points import is_number, lines_of, polygons_reading, read_blocks
+from splinesdf.io.readers.reading import Reading
 from splinesdf.io.readers.source import Options, Source
-from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import polygon
 
 # Points that separate elements have a coordinate of at least this.
 _SEPARATOR = 999.0
 
 
-def airfoil_shape(source: Source, options: Options) -> Shape:
+def airfoil_reading(source: Source, options: Options) -> Reading:
     """Closed polygons through the points; a blunt trailing edge is closed by a line."""
     text, notes = _without_prose(source.text())
     blocks = read_blocks(text, finite=True, columns=options.columns)
@@ -36,9 +36,7 @@ def airfoil_shape(source: Source, options: Options) -> Shape:
                     loops.append(polygon(part))
                 except InputError as error:
                     raise InputError(f"points from line {line} on: {error}") from error
-    return Shape.from_pieces(
-        loops, fill=options.fill, close=options.close, name=source.stem, notes=notes
-    )
+    return polygons_reading(loops, source.stem, options, notes)
 
 
 def _without_prose(text: str) -> tuple[str, tuple[str, ...]]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import logging
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -18,24 +19,26 @@ import numpy as np
 
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.limits import check_limit
 from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
+from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.joining import are_open, joined
-from splinesdf.shapes.loops import check_count, extent
+from splinesdf.shapes.loops import PRINTED_GAP, check_count, extent
 from splinesdf.shapes.region import Loops
-from splinesdf.shapes.shape import Shape
 
 # Millimeters of $INSUNITS, by its numbers.
 _UNITS = {
     1: 25.4, 2: 304.8, 3: 1609344.0, 4: 1.0, 5: 10.0, 6: 1000.0, 7: 1e6, 8: 25.4e-6, 9: 25.4e-3,
     10: 914.4, 11: 1e-7, 12: 1e-6, 13: 1e-3, 14: 100.0, 15: 1e4, 16: 1e5,
 }  # fmt: skip
-# Entities of a drawing, those in blocks as often as they are inserted. More: a few lines of
-# INSERT within INSERT take all time and memory.
-_MOST_ENTITIES = 1_000_000
 # Ends of edges drawn twice agree to this share of the drawing's size: it is what printed digits
 # leave. Larger: edges side by side count once; smaller: edges drawn twice do not.
 _SAME = 1e-9
+# How ezdxf says that it took out an entity, which would be missing without a word.
+_REMOVED = re.compile(
+    r"(?:Removed|Deleted) (?:entity |standalone |(?:invalid )?DXF entity )?([A-Z0-9]+)\(#"
+)
 
 
 class _Edge(NamedTuple):
@@ -45,14 +48,16 @@ class _Edge(NamedTuple):
     pieces: list[Floats]
 
 
-def dxf_shape(source: Source, options: Options) -> Shape:
-    """The region inside an odd number of the closed outlines of the model space."""
+def dxf_reading(source: Source, options: Options) -> Reading:
+    """The closed outlines of the model space; what is inside an odd number of them is filled."""
     if not source.content.strip():
         raise InputError("the file is empty")
-    document, damaged = _document(source)
-    left_out: Counter[str] = Counter()
+    document, auditor = _document(source)
+    found = (_REMOVED.match(fix.message) for fix in auditor.fixes)
+    left_out = Counter(f"damaged {match[1]}" for match in found if match)
     edges = list(_edges(document, options, left_out))
-    notes = [f"mended while reading: {damaged} errors in the file"] if damaged else []
+    errors = len(auditor.errors)
+    notes = [f"mended while reading: {errors} errors in the file"] if errors else []
     if left_out:
         words = ", ".join(f"{count} {name}" for name, count in left_out.items())
         notes.append(f"left out: {words}")
@@ -66,23 +71,25 @@ def dxf_shape(source: Source, options: Options) -> Shape:
         notes.append(f"drawn again, counted once: {again} edges")
     loops, about_joints = _joined([edge.pieces for edge in edges], options)
     loops, about_open = _without_open(loops, options)
-    notes += [note for note in (about_joints, about_open) if note]
+    notes += [*about_joints, *([about_open] if about_open else [])]
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)))
     if unit is None:
         notes.append("the file does not say its unit ($INSUNITS)")
-    return Shape.from_pieces(
-        loops,
-        fill=options.fill or "evenodd",
+    return Reading(
+        source.stem,
+        [f"outline {k + 1}" for k in range(len(loops))],
+        [],
+        [Part(k, [loop]) for k, loop in enumerate(loops)],
+        rule=options.fill or "evenodd",
         close=options.close,
-        name=source.stem,
-        notes=tuple(notes),
         once=options.fill is None,
+        notes=tuple(notes),
         unit=unit,
     )
 
 
-def _document(source: Source) -> tuple[Any, int]:
-    """The drawing, and how many errors were mended in it."""
+def _document(source: Source) -> tuple[Any, Any]:
+    """The drawing, and ezdxf's list of what it mended in it."""
     try:
         import ezdxf.filemanagement
         from ezdxf import recover
@@ -106,7 +113,7 @@ def _document(source: Source) -> tuple[Any, int]:
         raise InputError(
             f"expected a DXF file, got one that cannot be read ({type(error).__name__})"
         ) from error
-    return document, len(auditor.errors)
+    return document, auditor
 
 
 def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[_Edge]:
@@ -128,7 +135,7 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
     _check_inserts(document)
     count = 0
     for number, entity in enumerate(_resolved(disassemble, document)):
-        _check_entities(number)
+        _check_entities(number + 1)
         kind, layer = entity.dxftype(), entity.dxf.get("layer", "0").lower()
         if layers is not None and layer not in layers:
             left_out["entities on other layers"] += 1
@@ -150,8 +157,7 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
 
 
 def _check_entities(count: int) -> None:
-    if count >= _MOST_ENTITIES:
-        raise InputError(f"expected at most {_MOST_ENTITIES:,} entities, got more")
+    check_limit("elements", count, "entities, those in blocks as often as they are inserted")
 
 
 def _check_inserts(document: Any) -> None:
@@ -228,30 +234,31 @@ def _once(edges: list[_Edge]) -> tuple[list[_Edge], int]:
     return kept, len(edges) - len(kept)
 
 
-def _joined(loops: Loops, options: Options) -> tuple[Loops, str | None]:
-    """Edges joined end to end, and the largest gap that was met."""
+def _joined(loops: Loops, options: Options) -> tuple[Loops, list[str]]:
+    """Edges joined end to end, and what is said of gaps and forks."""
     size, _ = extent(loops)
-    chains, count, gap = joined(loops, gap=options.gap)
-    if not count or gap == 0.0:
-        return chains, None
-    if gap <= 1e-12 * size:
-        return chains, None
-    return [_bridged(chain) for chain in chains], (
-        f"joined end to end: {count} edges, over gaps of up to {gap:.3g}"
-    )
+    found, notes = joined(loops, gap=options.gap), []
+    if found.forks:
+        notes.append(
+            f"not one region: outlines fork at {found.forks} places, where an odd number of edges "
+            "end; the earlier ones in the file are joined"
+        )
+    if not found.paths or found.largest <= 1e-12 * size:
+        return found.loops, notes
+    gap = PRINTED_GAP * size if options.gap is None else options.gap
+    notes.append(f"joined end to end: {found.paths} edges, over gaps of up to {found.largest:.3g}")
+    return [_bridged(chain, gap) for chain in found.loops], notes
 
 
-def _bridged(chain: list[Floats]) -> list[Floats]:
+def _bridged(chain: list[Floats], most: float) -> list[Floats]:
     """The chain with straight pieces where one piece does not begin where the last one ended."""
     result = [chain[0]]
     for piece in chain[1:]:
         if np.any(piece[0] != result[-1][-1]):
             result.append(np.array([result[-1][-1], piece[0]]))
         result.append(piece)
-    if len(result) > 1 and np.any(result[0][0] != result[-1][-1]):
-        gap = math.dist(result[0][0], result[-1][-1])
-        if gap <= max(math.dist(p[0], p[-1]) for p in result):
-            result.append(np.array([result[-1][-1], result[0][0]]))
+    if len(result) > 1 and 0.0 < math.dist(result[0][0], result[-1][-1]) <= most:
+        result.append(np.array([result[-1][-1], result[0][0]]))
     return result
 
 

@@ -19,6 +19,12 @@ from splinesdf.shapes.sources.nurbs import nurbs_pieces
 
 # A direction that is off the vertical by less is rounding of a file's digits.
 _UPRIGHT = 1e-9
+# Numbers beyond this are no drawing's, and products of theirs overflow.
+_LARGEST = 1e100
+# Arcs of a smaller bulge, the tangent of a quarter of their angle, are cubics to rounding: these
+# miss 0.02 of the fifth power of the bulge, in chords. Larger: that could be seen; smaller: the
+# center is so far away that its rounding is seen.
+_SLIGHT = 1e-3
 # Points whose heights differ by less than this share of the entity's size are in one plane.
 _LEVEL = 1e-9
 
@@ -33,8 +39,14 @@ def is_tilted(entity: Any) -> bool:
     return math.hypot(up[0], up[1]) > _UPRIGHT * math.hypot(*up)
 
 
+def _check_usable(*numbers: float) -> None:
+    if not all(abs(number) <= _LARGEST for number in numbers):
+        raise Flat("with numbers beyond use")
+
+
 def _line(entity: Any) -> Iterator[list[Floats]]:
     ends = np.array([tuple(entity.dxf.start), tuple(entity.dxf.end)])
+    _check_usable(*ends.ravel())
     _check_level(ends)
     if np.array_equal(ends[0, :2], ends[1, :2]):
         raise Flat("of no length")
@@ -43,6 +55,7 @@ def _line(entity: Any) -> Iterator[list[Floats]]:
 
 def _arc(entity: Any) -> Iterator[list[Floats]]:
     first, last = math.radians(entity.dxf.start_angle), math.radians(entity.dxf.end_angle)
+    _check_usable(first, last)
     sweep = math.fmod(last - first, 2.0 * math.pi)
     yield _round(entity, first, sweep + 2.0 * math.pi if sweep <= 0.0 else sweep)
 
@@ -57,6 +70,7 @@ def _round(entity: Any, first: float, sweep: float) -> list[Floats]:
     if radius == 0.0:
         raise Flat("of no radius")
     x, y, _ = entity.dxf.center
+    _check_usable(x, y, radius)
     mirror = _mirror(entity)
     return compile_arc((mirror * x, y), (mirror * radius, 0.0), (0.0, radius), first, sweep)
 
@@ -72,6 +86,7 @@ def _ellipse(entity: Any) -> Iterator[list[Floats]]:
     if math.hypot(ax, ay) == 0.0 or abs(az) > _LEVEL * math.hypot(ax, ay):
         raise Flat("tilted")
     ratio, up = float(entity.dxf.ratio), _mirror(entity)
+    _check_usable(x, y, ax, ay, ratio, entity.dxf.start_param, entity.dxf.end_param)
     if ratio == 0.0:
         raise Flat("of no width")
     # The minor axis is the extrusion times the major one.
@@ -95,6 +110,8 @@ def _polyline(entity: Any) -> Iterator[list[Floats]]:
     if entity.is_poly_face_mesh or entity.is_polygon_mesh:
         raise Flat("a mesh")
     vertices = [v for v in entity.vertices if not v.dxf.get("flags", 0) & 16]  # no spline frame
+    if not all(v.dxf.hasattr("location") for v in vertices):
+        raise Flat("with a corner that is nowhere")
     places = np.array([tuple(v.dxf.location) for v in vertices], dtype=np.float64).reshape(-1, 3)
     if entity.is_3d_polyline:
         _check_level(places)
@@ -107,8 +124,9 @@ def _polyline(entity: Any) -> Iterator[list[Floats]]:
 
 def _bulged(corners: Floats, closed: bool, mirror: float) -> list[Floats]:
     """A polyline; where a corner has a bulge an arc leads to the next one."""
-    if len(corners) == 0 or not np.isfinite(corners).all():
+    if len(corners) == 0:
         raise Flat("without points")
+    _check_usable(*corners.ravel())
     corners = corners * [mirror, 1.0, mirror]
     rows = list(corners)
     if closed:
@@ -119,6 +137,9 @@ def _bulged(corners: Floats, closed: bool, mirror: float) -> list[Floats]:
             continue
         if bulge == 0.0:
             pieces.append(np.array([(x0, y0), (x1, y1)]))
+            continue
+        if abs(bulge) < _SLIGHT:
+            pieces.append(_slight(np.array([x0, y0]), np.array([x1, y1]), float(bulge)))
             continue
         # The bulge is the tangent of a quarter of the angle, positive to the left of the chord.
         sweep = 4.0 * math.atan(bulge)
@@ -132,6 +153,13 @@ def _bulged(corners: Floats, closed: bool, mirror: float) -> list[Floats]:
     if not pieces:
         raise Flat("of no length")
     return pieces
+
+
+def _slight(start: Floats, end: Floats, bulge: float) -> Floats:
+    """An arc of a small bulge as a cubic, which touches the arc at its ends."""
+    angle, (x, y) = 2.0 * math.atan(bulge), (1.0 + bulge * bulge) / 3.0 * (end - start)
+    along, across = np.array([x, y]) * math.cos(angle), np.array([y, -x]) * math.sin(angle)
+    return np.array([start, start + along + across, end - along + across, end])
 
 
 def _spline(entity: Any) -> Iterator[list[Floats]]:

@@ -10,8 +10,10 @@ so.
 from __future__ import annotations
 
 import io
+import logging
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,10 +21,10 @@ import numpy as np
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.fonts_packed import check_unpacked
+from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.loops import check_count
 from splinesdf.shapes.region import Loops, region
-from splinesdf.shapes.shape import Shape
 
 # Characters of a text. More: a novel by mistake; each glyph is a dozen curves.
 _MOST_CHARACTERS = 10_000
@@ -40,10 +42,11 @@ class _Placed(NamedTuple):
     name: str
     x: float
     y: float
+    text: str  # the characters that it stands for
 
 
-def font_shape(source: Source, options: Options) -> Shape:
-    """The text in the font."""
+def font_reading(source: Source, options: Options) -> Reading:
+    """The text in the font, an element for each glyph that is placed."""
     if options.text is None:
         raise InputError("expected a text to read from a font: pass text='...' (--text)")
     if len(options.text) > _MOST_CHARACTERS:
@@ -52,10 +55,10 @@ def font_shape(source: Source, options: Options) -> Shape:
         )
     with readable():
         font = opened(source.content)
-        loops, notes = _loops(font, source.content, options)
-    if not loops:
-        raise InputError(f"expected a text with something to see, got {options.text[:40]!r}")
-    return Shape.from_pieces(loops, fill="nonzero", name=options.text[:40], notes=notes, once=False)
+        names, parts, notes = _parts(font, source.content, options)
+    text = options.text[:40]
+    nothing = f"expected a text with something to see, got {text!r}"
+    return Reading(text, names, parts, [], notes=notes, nothing=nothing)
 
 
 @contextmanager
@@ -71,8 +74,10 @@ def readable() -> Iterator[None]:
         ) from error
 
 
-def _loops(font: Any, content: bytes, options: Options) -> tuple[Loops, tuple[str, ...]]:
-    """The glyphs of the text, inside on the left, and what is to be said."""
+def _parts(
+    font: Any, content: bytes, options: Options
+) -> tuple[list[str], list[Part], tuple[str, ...]]:
+    """What the glyphs are called, each one's loops, inside on the left, and what is to be said."""
     assert options.text is not None
     location = checked_location(font, options.location)
     _check_characters(font, options.text)
@@ -82,16 +87,18 @@ def _loops(font: Any, content: bytes, options: Options) -> tuple[Loops, tuple[st
     units = float(font["head"].unitsPerEm)
     scale = 1.0 if options.size is None else options.size / units
     regions: dict[str, Loops] = {}
-    loops: Loops = []
+    parts: list[Part] = []
     pieces = 0
-    for name, x, y in placed:
+    for number, (name, x, y, _) in enumerate(placed):
         if name not in regions:
             regions[name] = region(outline(glyphs, name), options.fill or "nonzero")
         shift = np.array([x, y])
-        loops += [[scale * (piece + shift) for piece in loop] for loop in regions[name]]
+        loops = [[scale * (piece + shift) for piece in loop] for loop in regions[name]]
+        if loops:
+            parts.append(Part(number, loops))
         pieces += sum(map(len, regions[name]))
         check_count(pieces)
-    return loops, notes
+    return [glyph.text for glyph in placed], parts, notes
 
 
 def opened(content: bytes) -> Any:
@@ -102,6 +109,8 @@ def opened(content: bytes) -> Any:
         raise MissingExtraError(
             "reading fonts needs fontTools: pip install 'splinesdf[fonts]'"
         ) from error
+    # What it says of a damaged font goes to the screen otherwise.
+    logging.getLogger("fontTools").setLevel(logging.CRITICAL)
     try:
         check_unpacked(content)
         font = TTFont(io.BytesIO(content), fontNumber=0, lazy=True)
@@ -174,7 +183,7 @@ def _placed(
                 name = known.get(ord(character), known.get(32))
                 if name is None:
                     continue
-                placed.append(_Placed(name, x, -number * below))
+                placed.append(_Placed(name, x, -number * below, character))
                 x += float(glyphs[name].width)
         note = "no kerning or ligatures: glyphs are placed by their widths, as uharfbuzz is missing"
         return placed, (note,) if len(text) > 1 else ()
@@ -189,8 +198,14 @@ def _placed(
         buffer.guess_segment_properties()
         uharfbuzz.shape(shaper, buffer)
         x, y = 0.0, -number * below
-        for info, at in zip(buffer.glyph_infos or [], buffer.glyph_positions or [], strict=True):
-            placed.append(_Placed(order[info.codepoint], x + at.x_offset, y + at.y_offset))
+        infos = buffer.glyph_infos or []
+        # Each glyph stands for the characters from its cluster on to the next one.
+        clusters = [*sorted({info.cluster for info in infos}), len(line)]
+        stops = dict(pairwise(clusters))
+        for info, at in zip(infos, buffer.glyph_positions or [], strict=True):
+            characters = line[info.cluster : stops[info.cluster]]
+            place = x + at.x_offset, y + at.y_offset
+            placed.append(_Placed(order[info.codepoint], *place, characters))
             x, y = x + at.x_advance, y + at.y_advance
     return placed, ()
 

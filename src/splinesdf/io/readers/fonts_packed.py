@@ -6,11 +6,8 @@ import io
 import zlib
 from typing import Any
 
-from splinesdf.errors import InputError
+from splinesdf.ground.limits import check_limit, limits_in_use
 
-# Bytes that a packed font may unpack to. Fonts of all of Chinese have 30 MB. More: memory; fewer:
-# large collections must be unpacked first.
-_MOST_UNPACKED = 200_000_000
 # The lengths of the headers of both formats.
 _WOFF, _WOFF2 = 44, 48
 
@@ -23,14 +20,14 @@ def check_unpacked(content: bytes) -> None:
     content : bytes
         A file. Of one that is not packed, or is cut short, nothing is said here.
     """
-    count = int.from_bytes(content[12:14], "big")
+    count, most = int.from_bytes(content[12:14], "big"), limits_in_use().expanded
     if content[:4] == b"wOFF":
         size = 0
         for start in range(_WOFF, min(_WOFF + 20 * count, len(content) - 20), 20):
             at, packed = (int.from_bytes(content[start + k : start + k + 4], "big") for k in (4, 8))
             try:
                 unpack = zlib.decompressobj()
-                size += len(unpack.decompress(content[at : at + packed], _MOST_UNPACKED + 1))
+                size += len(unpack.decompress(content[at : at + packed], most + 1))
             except zlib.error:
                 continue  # not packed, or damaged
             _check(size)
@@ -42,16 +39,17 @@ def check_unpacked(content: bytes) -> None:
         for _ in range(count):
             WOFF2DirectoryEntry().fromFile(rest)
         start, packed = rest.tell(), int.from_bytes(content[20:24], "big")
-        _check(_brotli_size(content[start : start + packed]))
+        _check(_brotli_size(content[start : start + packed], most))
 
 
-def _brotli_size(packed: bytes) -> int:
+def _brotli_size(packed: bytes, most: int) -> int:
+    """What it unpacks to, or a little more than ``most``."""
     import brotli
 
     unpack: Any = brotli.Decompressor()
     size, given = 0, packed
     try:
-        while size <= _MOST_UNPACKED:
+        while size <= most:
             part = len(unpack.process(given, output_buffer_limit=1 << 20))
             size, given = size + part, b""
             if unpack.is_finished() or not part:
@@ -62,8 +60,4 @@ def _brotli_size(packed: bytes) -> int:
 
 
 def _check(size: int) -> None:
-    if size > _MOST_UNPACKED:
-        raise InputError(
-            f"expected a packed font of up to {_MOST_UNPACKED:,} bytes, got a larger one: unpack "
-            "it, if it is meant to be that large"
-        )
+    check_limit("expanded", size, "bytes of a font, unpacked")

@@ -11,21 +11,20 @@ from typing import Any
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
-from splinesdf.io.readers.maps import geojson_shape
+from splinesdf.ground.limits import check_limit
+from splinesdf.io.readers.maps import geojson_reading
+from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source
-from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.compiled import compile_curve
 from splinesdf.shapes.sources.formula import parse_curve
 from splinesdf.shapes.sources.geojson import TYPES
 
 _CURVE = ("x", "y", "t")
 _WHOLE = ("fill", "name")
-# Pieces that all formulas of a file may need: 5 s. One may need 20,000.
-_MOST_PIECES = 200_000
 _FULL_TURN = [0.0, "2*pi"]
 
 
-def json_shape(source: Source, options: Options) -> Shape:
+def json_reading(source: Source, options: Options) -> Reading:
     """Formulas, or a GeoJSON document, which has a type."""
     try:
         # As integers, long ones would not convert.
@@ -33,14 +32,16 @@ def json_shape(source: Source, options: Options) -> Shape:
     except (ValueError, RecursionError) as error:
         raise InputError(f"expected formulas as JSON, got something else: {error}") from error
     if isinstance(content, dict) and content.get("type") in TYPES:
-        return geojson_shape(source, options)
+        return geojson_reading(source, options)
     if isinstance(content, dict) and content.get("format") == "splinesdf":
         raise InputError("expected a shape, got a saved fit: splinesdf.load reads it")
-    return formula_shape(content, source.stem, options)
+    return formula_reading(content, source.stem, options)
 
 
-def formula_shape(content: Any, stem: str, options: Options) -> Shape:
+def formula_reading(content: Any, stem: str, options: Options) -> Reading:
     """The curves of ``{"x": ..., "y": ..., "t": [start, stop]}`` or of a list ``"loops"`` of these.
+
+    Each is an element.
 
     ``"t"`` may be missing (0 to 2π). Instead of ``"x"`` and ``"y"`` a loop may have a list
     ``"sections"`` of such curves, each of which starts where the one before it ended. ``"fill"``
@@ -59,7 +60,15 @@ def formula_shape(content: Any, stem: str, options: Options) -> Shape:
     else:
         _check_keys(content, ("loops", *_WHOLE))
         loops = _several(content, "loops", _loop)
-    return Shape.from_pieces(loops, fill=rule, close=options.close, name=name, once=fill is None)
+    return Reading(
+        name,
+        [f"loop {k + 1}" for k in range(len(loops))] if "loops" in content else [name],
+        [],
+        [Part(k, [loop]) for k, loop in enumerate(loops)],
+        rule=rule,
+        close=options.close,
+        once=fill is None,
+    )
 
 
 def _several(
@@ -78,10 +87,7 @@ def _several(
                 raise InputError(f'expected an object with "x" and "y", got {_kind(entry)}')
             result.append(read(entry, ()))
             count += len(result[-1])
-            if count > _MOST_PIECES:
-                raise InputError(
-                    f"expected formulas that need up to {_MOST_PIECES:,} pieces in all, got more"
-                )
+            check_limit("formulas", count, "pieces of all formulas together")
         except InputError as error:
             raise InputError(f"{key.removesuffix('s')} {number}: {error}") from error
     return result

@@ -13,27 +13,29 @@ from typing import Any
 import numpy as np
 
 from splinesdf.errors import InputError
+from splinesdf.ground.limits import check_limit
+from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source
-from splinesdf.shapes.shape import Shape
 from splinesdf.shapes.sources.geojson import Polygons, add_polygon, nothing_found, polygons_of
 
-# Brackets within brackets. More: nothing that is drawn has more.
-_DEEPEST = 100
 _WKT = re.compile(r"\s*(?:([A-Za-z]+)|([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|([(),;=]))")
 
 
-def geojson_shape(source: Source, options: Options) -> Shape:
-    """The union of all polygons of a GeoJSON document."""
+def geojson_reading(source: Source, options: Options) -> Reading:
+    """The polygons of a GeoJSON document, an element for each feature or geometry."""
     try:
         content = json.loads(source.text(), parse_int=float)
     except (ValueError, RecursionError) as error:
         raise InputError(f"expected GeoJSON, got something else: {error}") from error
-    return _shape(polygons_of(content), source, options, degrees=True)
+    return _reading(polygons_of(content), source, options, degrees=True)
 
 
-def _shape(found: Polygons, source: Source, options: Options, *, degrees: bool) -> Shape:
-    """The union of polygons, and notes on what else there is."""
-    loops, fill = found.united(options.fill)
+def _reading(found: Polygons, source: Source, options: Options, *, degrees: bool) -> Reading:
+    """Polygons, and notes on what else there is."""
+    if not found.rings:
+        raise InputError(found.nothing())
+    rule = options.fill or "evenodd"
+    parts = [Part(k, loops, rule) for k, loops in zip(found.owner, found.polygons(), strict=True)]
     notes = found.notes()
     corners = np.concatenate([ring for rings in found.rings for ring in rings])
     if degrees and np.all(np.abs(corners) <= [180.0, 90.0]):
@@ -41,13 +43,11 @@ def _shape(found: Polygons, source: Source, options: Options, *, degrees: bool) 
             "all coordinates could be degrees of longitude and latitude: if so, distances are in "
             "degrees, and not the same in both directions",
         )
-    return Shape.from_pieces(
-        loops, fill=fill, close=True, name=source.stem, notes=notes, once=False
-    )
+    return Reading(source.stem, found.elements, parts, [], notes=notes)
 
 
-def wkt_shape(source: Source, options: Options) -> Shape:
-    """The union of all polygons of well-known text, one geometry after the other."""
+def wkt_reading(source: Source, options: Options) -> Reading:
+    """The polygons of well-known text, one geometry after the other, each an element."""
     tokens = list(_tokens(source.text()))
     found, at = nothing_found(), 0
     while at < len(tokens):
@@ -57,7 +57,7 @@ def wkt_shape(source: Source, options: Options) -> Shape:
             at += 3
         else:
             at = _geometry(tokens, at, found, 0)
-    return _shape(found, source, options, degrees=False)
+    return _reading(found, source, options, degrees=False)
 
 
 def _tokens(text: str) -> Iterator[str]:
@@ -75,9 +75,10 @@ def _tokens(text: str) -> Iterator[str]:
 
 def _geometry(tokens: list[str], at: int, found: Polygons, depth: int) -> int:
     """Read a geometry from a token on; the token after it."""
-    if depth > _DEEPEST:
-        raise InputError(f"expected geometries nested up to {_DEEPEST} deep, got deeper ones")
+    check_limit("nesting", depth, "geometries within one another")
     kind, at = _take(tokens, at).upper(), at + 1
+    if kind != "GEOMETRYCOLLECTION":  # its geometries are elements each
+        found.elements.append(f"{kind[:20]} {len(found.elements) + 1}")
     if at < len(tokens) and tokens[at].upper() in ("Z", "M", "ZM"):
         at += 1
     if at < len(tokens) and tokens[at].upper() == "EMPTY":
@@ -111,8 +112,7 @@ def _nested(tokens: list[str], at: int) -> tuple[list[Any], int]:
         token, at = _take(tokens, at), at + 1
         if token == "(":
             stack.append([])
-            if len(stack) > _DEEPEST:
-                raise InputError(f"expected brackets up to {_DEEPEST} deep, got deeper ones")
+            check_limit("nesting", len(stack), "brackets within one another")
         elif token in (",", ")"):
             if point:
                 stack[-1].append(point)

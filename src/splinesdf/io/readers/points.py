@@ -15,16 +15,17 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.loops import check_count
-from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.region import Loops
 from splinesdf.shapes.sources.compiled import polygon
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 
 
-def points_shape(source: Source, options: Options) -> Shape:
-    """Closed polygons through the points; a blank line begins the next one.
+def points_reading(source: Source, options: Options) -> Reading:
+    """Closed polygons through the points, an element each; a blank line begins the next one.
 
     A polygon's last point is always joined to its first, whatever ``close`` says.
     """
@@ -34,7 +35,23 @@ def points_shape(source: Source, options: Options) -> Shape:
             loops.append(polygon(points))
         except InputError as error:
             raise InputError(f"points from line {line} on: {error}") from error
-    return Shape.from_pieces(loops, fill=options.fill, close=options.close, name=source.stem)
+    return polygons_reading(loops, source.stem, options)
+
+
+def polygons_reading(
+    loops: Loops, name: str, options: Options, notes: tuple[str, ...] = ()
+) -> Reading:
+    """Polygons that fill a region together."""
+    return Reading(
+        name,
+        [f"polygon {k + 1}" for k in range(len(loops))],
+        [],
+        [Part(k, [loop]) for k, loop in enumerate(loops)],
+        rule=options.fill,
+        close=options.close,
+        once=options.fill is None,
+        notes=notes,
+    )
 
 
 def read_blocks(

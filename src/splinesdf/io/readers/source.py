@@ -8,11 +8,12 @@ from typing import NamedTuple, TypedDict
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import finite, positive
+from splinesdf.ground.limits import Limits, checked_limits
 from splinesdf.ground.options import check_known, with_options
 
 STROKES = ("none", "outline", "centre")
 # Options that all readers have a use for.
-_ALL_USE = ("fill", "close")
+_ALL_USE = ("fill", "close", "limits")
 IGNORED = ("clip-path", "mask", "dashes")
 
 
@@ -62,6 +63,7 @@ class Options(NamedTuple):
     text: str | None = None
     size: float | None = None
     location: Mapping[str, float] | None = None
+    limits: Limits = Limits()
 
 
 class ReadOptions(TypedDict, total=False):
@@ -79,6 +81,7 @@ class ReadOptions(TypedDict, total=False):
     text: str | None
     size: float | None
     location: Mapping[str, float] | None
+    limits: Limits | None
 
 
 DEFAULTS: ReadOptions = {
@@ -94,6 +97,7 @@ DEFAULTS: ReadOptions = {
     "text": None,
     "size": None,
     "location": None,
+    "limits": None,
 }
 read_options = with_options(ReadOptions, DEFAULTS)
 
@@ -132,6 +136,7 @@ def checked_options(given: ReadOptions) -> Options:
         _text(given.get("text"), "text"),
         None if size is None else positive(size, "size"),
         _location(given.get("location")),
+        checked_limits(given.get("limits")),
     )
 
 

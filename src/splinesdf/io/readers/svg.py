@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source
 from splinesdf.io.readers.svg_chosen import chosen
 from splinesdf.io.readers.svg_context import Drawn
@@ -21,11 +22,10 @@ from splinesdf.io.readers.svg_document import parse_document
 from splinesdf.io.readers.svg_open import joined_loops, without_open
 from splinesdf.io.readers.svg_regions import clips_of, filled, is_flat
 from splinesdf.io.readers.svg_strokes import stroked
-from splinesdf.io.readers.svg_units import unit_length, unit_note
+from splinesdf.io.readers.svg_units import page_of, unit_length, unit_note
 from splinesdf.io.readers.svg_walk import Document, Found
-from splinesdf.shapes.region import Loops, region
+from splinesdf.shapes.region import Loops
 from splinesdf.shapes.repeats import drawn_once, first_of_each, repeats_note
-from splinesdf.shapes.shape import Shape
 
 # Errors that notes show; of the others they say how many there are.
 _SHOWN = 3
@@ -44,16 +44,19 @@ class _Drawing(NamedTuple):
 class _Lines(NamedTuple):
     """Closed lines, the rule under which they enclose a region, and what is to be said."""
 
-    loops: Loops
+    parts: list[Part]
     rule: str
     notes: tuple[str, ...]
 
 
-def svg_shape(source: Source, options: Options) -> Shape:
-    """The shape that the document's elements fill; of lines if that is asked for."""
+def svg_reading(source: Source, options: Options) -> Reading:
+    """What the document's elements fill; of lines if that is asked for."""
     root = parse_document(source.content)
     document = Document(root, options.ignore, clips_of)
-    elements = chosen(list(document.outlines()), document, options)
+    elements = [
+        replace(drawn, number=number)
+        for number, drawn in enumerate(chosen(list(document.outlines()), document, options))
+    ]
     if document.styles.unread:
         document.found.left_out["style that is no CSS"] += document.styles.unread
     # A file may say itself that its strokes are closed lines, as those of `write` do.
@@ -61,31 +64,41 @@ def svg_shape(source: Source, options: Options) -> Shape:
     drawing = _by_paint(elements, options.stroke or said)
     fills, repeats = _fills(drawing.fills, options, document.found)
     lines = _closed_lines(drawing.lines, options)
-    outlined = [stroked(drawn, document) for drawn in drawing.outlined]
+    outlined = [Part(drawn.number, stroked(drawn, document)) for drawn in drawing.outlined]
     notes = (*_notes(drawing, document.found), *repeats_note(repeats), *lines.notes)
     if unit := unit_note(root):
         notes = (*notes, unit)
-    alone = len(fills) == 1 and not (lines.loops or outlined or fills[0].context.clips)
-    if alone:
-        loops, rule = fills[0].loops, options.fill or fills[0].context.rule or "nonzero"
-    elif not (fills or outlined):
-        loops, rule = lines.loops, lines.rule
-    else:
-        parts = [filled(drawn, options.fill) for drawn in fills]
-        parts += [*outlined, region(lines.loops, lines.rule)]
-        loops, rule = [loop for part in parts for loop in part], "nonzero"
-    if not loops:
-        raise InputError(_nothing(drawing, notes))
-    return Shape.from_pieces(
-        loops,
-        fill=rule,
-        close=options.close or bool(fills or outlined),
-        y_down=True,
-        name=source.stem,
+    parts = [_filled_part(drawn, options.fill) for drawn in fills]
+    return Reading(
+        source.stem,
+        _names(elements),
+        [*parts, *outlined],
+        lines.parts,
+        rule=lines.rule,
+        close=options.close,
         notes=notes,
-        once=False,
+        y_down=True,
         unit=unit_length(root),
+        page=page_of(root),
+        nothing=_nothing(drawing, notes),
     )
+
+
+def _filled_part(drawn: Drawn, fill: str | None) -> Part:
+    """What an element fills: its loops as they are, unless something cuts them."""
+    if drawn.context.clips:
+        return Part(drawn.number, filled(drawn, fill))
+    return Part(drawn.number, drawn.loops, fill or drawn.context.rule or "nonzero")
+
+
+def _names(elements: Sequence[Drawn]) -> list[str]:
+    """What elements are called: by id or label, else the kind and the number within it."""
+    counts: Counter[str] = Counter()
+    names = []
+    for drawn in elements:
+        counts[drawn.tag] += 1
+        names.append(drawn.name or f"{drawn.tag} {counts[drawn.tag]}")
+    return names
 
 
 def _by_paint(elements: list[Drawn], stroke: str) -> _Drawing:
@@ -143,22 +156,33 @@ def _closed_lines(elements: list[Drawn], options: Options) -> _Lines:
         kept, about_open = without_open([(drawn.label, drawn.loops) for drawn in elements])
     repeats: tuple[str, ...] = ()
     rules = {d.context.rule for d, loops in zip(elements, kept, strict=True) if loops} - {None}
-    loops = [loop for each in kept for loop in each]
-    if options.fill is None and loops:
-        first = first_of_each(loops)
+    owned = [(d.number, loop) for d, loops in zip(elements, kept, strict=True) for loop in loops]
+    if options.fill is None and owned:
+        first = first_of_each([loop for _, loop in owned])
         names = [
             f"{drawn.tag} {number}"
             for number, (drawn, each) in enumerate(zip(elements, kept, strict=True), 1)
             for _ in each
         ]
-        again = [k for k in range(len(loops)) if first[k] != k]
-        loops = [loop for k, loop in enumerate(loops) if first[k] == k]
+        again = [k for k in range(len(owned)) if first[k] != k]
+        owned = [one for k, one in enumerate(owned) if first[k] == k]
         repeats = repeats_note([f"{names[k]} as {names[first[k]]}" for k in again])
-    if options.close and loops:
-        loops, about_open = joined_loops(loops)
+    if options.close and owned:
+        chains, about_open = joined_loops([loop for _, loop in owned])
+        owned = _owners(chains, owned)
     notes = (*repeats, *([about_open] if about_open else []))
     rule = options.fill or (rules.pop() if len(rules) == 1 else None) or "evenodd"
-    return _Lines(loops, rule, notes)
+    return _Lines([Part(number, [loop]) for number, loop in owned], rule, notes)
+
+
+def _owners(chains: Loops, owned: list[tuple[int, list[Floats]]]) -> list[tuple[int, list[Floats]]]:
+    """Joined chains, each with the first of the elements that it was joined from."""
+    of_piece: dict[bytes, int] = {}
+    for number, loop in owned:
+        for piece in loop:
+            for way in (piece, piece[::-1]):
+                of_piece.setdefault(way.tobytes(), number)
+    return [(min(of_piece[piece.tobytes()] for piece in chain), chain) for chain in chains]
 
 
 def _notes(drawing: _Drawing, found: Found) -> tuple[str, ...]:

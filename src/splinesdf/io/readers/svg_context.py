@@ -72,3 +72,5 @@ class Drawn:
     own: Loops | None
     closed: Sequence[bool]
     said_length: str = ""  # its pathLength, as written
+    name: str = ""  # its id or its label, if it has one
+    number: int = 0  # its place among all that are read

@@ -8,14 +8,9 @@ import zlib
 from xml.etree import ElementTree
 
 from splinesdf.errors import InputError
+from splinesdf.ground.limits import check_limit, limits_in_use, too_much
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
-# What a packed drawing may expand to, in bytes. More: a small file fills the memory; fewer: large
-# drawings must be unpacked first.
-_MOST_UNPACKED = 200_000_000
-# Tags and attributes of a drawing, by their signs: each takes 100 bytes and more. More: a file of
-# 500 MB takes 10 GB before it is looked at.
-_MOST_TAGS, _MOST_ATTRIBUTES = (4_000_000, "tags"), (5_000_000, "attributes")
 # Entities that a drawing may define, and characters of each. Drawing programs define a dozen names
 # of namespaces; more, or entities within entities, could expand without end.
 _MOST_ENTITIES, _LONGEST_ENTITY = 64, 1000
@@ -39,9 +34,8 @@ def parse_document(content: bytes) -> ElementTree.Element:
         raise InputError("expected text, got binary data: is it really an SVG file?")
     if not text.strip():
         raise InputError("the file is empty")
-    for sign, most, what in (("<", *_MOST_TAGS), ("=", *_MOST_ATTRIBUTES)):
-        if text.count(sign) > most:
-            raise InputError(f"expected a drawing with up to {most:,} {what}, got more")
+    check_limit("tags", text.count("<"), "tags")
+    check_limit("tags", text.count("="), "attributes")
     _check_entities(text)
     try:
         root = ElementTree.fromstring(text)
@@ -63,15 +57,13 @@ def _unpacked(content: bytes) -> bytes:
         return content
     unpack = zlib.decompressobj(wbits=31)
     try:
-        result = unpack.decompress(content, _MOST_UNPACKED)
+        most = limits_in_use().expanded
+        result = unpack.decompress(content, most)
         done = unpack.eof or not unpack.decompress(unpack.unconsumed_tail, 1)
     except zlib.error as error:
         raise InputError(f"expected a packed SVG document, got a damaged one: {error}") from error
     if not done:
-        raise InputError(
-            f"expected a packed SVG document of up to {_MOST_UNPACKED:,} bytes, got a larger one: "
-            "unpack it, if it is meant to be that large"
-        )
+        raise too_much("expanded", f"expected up to {most:,} bytes, unpacked, got more")
     if not unpack.eof:
         raise InputError("expected a packed SVG document, got one that was cut short")
     return result

@@ -47,7 +47,7 @@ def without_open(elements: Sequence[tuple[str, Loops]]) -> tuple[list[Loops], st
 
 def joined_loops(loops: Loops) -> tuple[Loops, str | None]:
     """The loops, open ones joined end to end, and a line that says how many were."""
-    chains, count, _ = joined(loops)
+    chains, count, *_ = joined(loops)
     if not count:
         return loops, None
     made = len(chains) - (len(loops) - count)

@@ -1,4 +1,4 @@
-"""The unit of an SVG document: its physical size, and a viewBox in units of the drawing."""
+"""The unit and the page of an SVG document: its size, and a viewBox in units of the drawing."""
 
 from __future__ import annotations
 
@@ -6,13 +6,48 @@ import math
 import re
 from xml.etree import ElementTree
 
-from splinesdf.io.readers.svg_lengths import INCH, MILLIMETERS, PX
+from splinesdf.errors import InputError
+from splinesdf.ground.arrays import as_page
+from splinesdf.io.readers.svg_lengths import INCH, MILLIMETERS, PX, View, length, view_box
 from splinesdf.shapes.sources.svg_path import parse_numbers
 
 _SIZE = re.compile(r"\s*([^\s%a-z]+(?:e[-+]?\d+)?)\s*(mm|cm|q|in|pt|pc)\s*", re.IGNORECASE)
 # Factors that differ by this share are one: it is what the six printed digits of a size leave.
 # Larger: a drawing that is off by a hair of every length is not told; smaller: "209.99999mm" is.
 _PRINTED = 1e-6
+
+
+def page_of(root: ElementTree.Element) -> tuple[float, float, float, float] | None:
+    """The page in user units: the viewBox, else width and height, else none.
+
+    A file may say itself which page its numbers are of, or that they are of none, as those of
+    `write` do: their viewBox is around what is drawn.
+    """
+    said = root.get("data-page")
+    if said == "none":
+        return None
+    box = None if said is None else view_box(said)
+    if box is None:
+        box = view_box(root.get("viewBox", "")) or _sheet(root)
+    if box is None:
+        return None
+    x, y, width, height = box
+    try:
+        return as_page((x, y, x + width, y + height))
+    except InputError:  # its sides are lost in the rounding of its corner
+        return None
+
+
+def _sheet(root: ElementTree.Element) -> tuple[float, float, float, float] | None:
+    """The corner, width and height that a document without a viewBox says; None if in percent."""
+    sides = []
+    for key in ("width", "height"):
+        text = root.get(key, "")
+        try:
+            sides.append(math.nan if "%" in text else length(text, key, View()))
+        except InputError:
+            return None
+    return (0.0, 0.0, sides[0], sides[1]) if min(sides) > 0.0 else None
 
 
 def unit_length(root: ElementTree.Element) -> float | None:
@@ -86,8 +121,5 @@ def _size(root: ElementTree.Element, key: str) -> tuple[str, float, bool] | None
 
 def _view_box(root: ElementTree.Element) -> tuple[float, float] | None:
     """Its width and height, or None if there is none that a browser would heed."""
-    try:
-        _, _, width, height = parse_numbers(root.get("viewBox", ""))
-    except ValueError:  # also not just four numbers
-        return None
-    return (width, height) if width > 0.0 and height > 0.0 else None
+    box = view_box(root.get("viewBox", ""))
+    return None if box is None else box[2:]

@@ -19,6 +19,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.limits import TooMuch, check_limit
 from splinesdf.io.readers.svg_clip import Clip, window
 from splinesdf.io.readers.svg_context import Context, Drawn
 from splinesdf.io.readers.svg_document import tag_of
@@ -27,7 +28,7 @@ from splinesdf.io.readers.svg_outlines import OUTLINES, Outline, as_styled, outl
 from splinesdf.io.readers.svg_paint import seen
 from splinesdf.io.readers.svg_style import INHERITED, Styles, share
 from splinesdf.io.readers.svg_transform import Matrix, mapped, parse_transform, product
-from splinesdf.shapes.loops import TooMuch, check_count, check_place
+from splinesdf.shapes.loops import check_count, check_place
 from splinesdf.shapes.region import Loops
 from splinesdf.shapes.sources.dashes import MOST_DASHES
 
@@ -39,11 +40,6 @@ NO_DRAWING = frozenset(
 )  # fmt: skip
 # What Inkscape calls a layer, as its users do.
 _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
-# Elements that are drawn, those that are referred to as often as they are. More: a few lines of
-# ``use`` in ``use`` take all time and memory; fewer: large drawings are refused.
-_MOST_DRAWN = 1_000_000
-# Elements times the clips around each, all taken together. More: minutes for clips in clips.
-_MOST_CUTS = 100_000
 _MARKERS = ("", "-start", "-mid", "-end")
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 
@@ -91,12 +87,8 @@ class Document:
         self._pieces += pieces
         self._cuts += cuts
         self._dashes += dashes
-        if self._elements > _MOST_DRAWN:
-            raise InputError(f"expected at most {_MOST_DRAWN:,} elements drawn, got more")
-        if self._cuts > _MOST_CUTS:
-            raise InputError(
-                f"expected elements to be clipped up to {_MOST_CUTS:,} times, got more"
-            )
+        check_limit("elements", self._elements, "elements drawn")
+        check_limit("clips", self._cuts, "clips, all elements taken together")
         if self._dashes > MOST_DASHES:
             raise InputError(
                 f"expected at most {MOST_DASHES:,} dashes in a drawing, got more: ignore='dashes' "
@@ -313,7 +305,8 @@ def _drawn(
         return None
     document.count(pieces=sum(map(len, loops)), cuts=len(context.clips))
     said = element.get("pathLength", "")
-    return Drawn(tag, loops, context, label, shape.loops, shape.closed, said)
+    name = element.get("id", "") or element.get(_LABEL, "")
+    return Drawn(tag, loops, context, label, shape.loops, shape.closed, said, name)
 
 
 def _mapped(shape: Outline, matrix: Matrix) -> list[list[Floats]]:

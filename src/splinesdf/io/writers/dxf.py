@@ -11,7 +11,7 @@ import numpy as np
 
 from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind, elements, unfolded
-from splinesdf.contours.contour import Contour, box, upright
+from splinesdf.contours.contour import Contour, box
 from splinesdf.errors import MissingExtraError
 from splinesdf.io.writers.options import DXF_UNITS, MILLIMETERS, Options
 
@@ -20,6 +20,11 @@ _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
 # An arc that readers of its center would miss by more than this share of its chord is drawn as a
 # spline, which is exact. Smaller, and arcs that others make with few digits are splines.
 _FLAT = 1e-9
+# Colors of layers by the AutoCAD color index, one distance after the other: each stands out from
+# a white background by a contrast of 3 at least, and from AutoCAD's dark one. More of them would
+# look alike. Red, ochre, pink, olive, magenta; blue, green, teal, lime, violet.
+_OUTSIDE, _INSIDE = (1, 42, 230, 54, 6), (150, 92, 134, 72, 200)
+_SHAPE = 7  # black or white, whatever the background is not
 
 
 def dxf_text(contours: Sequence[Contour], options: Options) -> str:
@@ -31,8 +36,7 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
     Bezier segment, the inner knots are double, so the curve passes through the arcs' ends. With
     ``arcs`` such contours, too, are made of lines and circular arcs, within the tolerance.
 
-    Contours of a source whose y axis points down are mirrored back, or the part would be cut
-    mirrored.
+    Layers have a color each: warm outside, cold inside, next to one another never the same.
     """
     try:
         from ezdxf.filemanagement import new
@@ -46,11 +50,11 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
     document.header["$INSUNITS"] = 0 if unit is None else DXF_UNITS.get(unit, 0)
     document.header["$MEASUREMENT"] = 0 if options.units == "inch" else 1
     space = document.modelspace()
-    chains = [upright(contour) for contour in contours]
-    for chain in chains:
-        layer = f"distance_{float(chain.distance) + 0.0!r}"  # + 0.0 turns -0.0 into 0.0
-        if layer not in document.layers:
-            document.layers.add(layer)
+    layers = _layers({float(contour.distance) + 0.0 for contour in contours})
+    for layer, color in layers.values():
+        document.layers.add(layer, color=color)
+    for chain in contours:
+        layer, _ = layers[float(chain.distance) + 0.0]
         if options.arcs:
             pieces = arc_elements(chain, tolerance=options.tolerance)
         else:
@@ -58,7 +62,7 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
             pieces = elements(chain)
         _add(space, chain, pieces, {"layer": layer}, exact=not options.arcs)
     # So that a viewer opens on the drawing, not on the origin.
-    xmin, ymin, xmax, ymax = box(chains)
+    xmin, ymin, xmax, ymax = box(contours)
     document.set_modelspace_vport(
         height=1.1 * max(xmax - xmin, ymax - ymin),
         center=(0.5 * (xmin + xmax), 0.5 * (ymin + ymax)),
@@ -66,6 +70,18 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
     text = io.StringIO()
     document.write(text)
     return text.getvalue()
+
+
+def _layers(distances: set[float]) -> dict[float, tuple[str, int]]:
+    """The name and the color of each distance's layer, those nearer to the shape first."""
+    result = {}
+    for inside, colors in ((False, _OUTSIDE), (True, _INSIDE)):
+        some = sorted((d for d in distances if d and (d < 0.0) == inside), key=abs)
+        for rank, distance in enumerate(some):
+            result[distance] = (f"distance_{distance!r}", colors[rank % len(colors)])
+    if 0.0 in distances:
+        result[0.0] = ("distance_0.0", _SHAPE)
+    return result
 
 
 def _add(

@@ -21,7 +21,7 @@ import numpy as np
 
 from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind
-from splinesdf.contours.contour import Contour, upright
+from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import smallest_around
 from splinesdf.ground.arrays import Bools
 from splinesdf.io.writers.options import Milling, Options
@@ -79,9 +79,13 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     largest = max(float(np.abs(contour.arcs).max()) for contour in contours)
     decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(options.tolerance)) + _DECIMALS_BEYOND)
     decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
-    paths = [_path(c, _SHARE * options.tolerance, milling.direction) for c in contours]
+    mirrored = options.mirrored or (False,) * len(contours)
+    paths = [
+        _path(contour, _SHARE * options.tolerance, milling.direction, seen)
+        for contour, seen in zip(contours, mirrored, strict=True)
+    ]
     cut = [k for k, path in enumerate(paths) if path.pieces]
-    around = smallest_around([upright(contours[k]) for k in cut])
+    around = smallest_around([contours[k] for k in cut])
     safe, plunge = f"G0 Z{_plain(milling.safe_height)}", f"G1 Z{_plain(-milling.depth)}"
     if milling.feed is not None:
         plunge += f" F{_plain(milling.feed)}"
@@ -100,12 +104,12 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     return "\n".join([*lines, "M2"]) + "\n"
 
 
-def _path(contour: Contour, tolerance: float, direction: str) -> _Path:
-    """The contour with y up, and what stays on the right (climb) or on the left."""
-    pieces = arc_elements(upright(contour), tolerance=tolerance)
+def _path(contour: Contour, tolerance: float, direction: str, mirrored: bool) -> _Path:
+    """The contour with what stays on the right (climb) or on the left."""
+    pieces = arc_elements(contour, tolerance=tolerance)
     # Contours have the side nearer to the inside on their left, where x turns into y; a mirror
     # changes sides. The shape is inside, and it stays if the way is around it.
-    inside_on_left = not contour.y_down
+    inside_on_left = not mirrored
     stays_on_left = inside_on_left == (contour.distance >= 0.0)
     if stays_on_left == (direction == "climb"):
         pieces = [

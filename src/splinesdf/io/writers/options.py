@@ -62,13 +62,14 @@ class Milling:
 
 @dataclass(frozen=True)
 class Options:
-    """All that `write` was told."""
+    """What a writer is told of a file whose contours are in its own coordinates."""
 
     tolerance: float
     arcs: bool = False
     units: str | None = None
     milling: Milling | None = None
     unit: float | None = None  # millimeters of the contours' own unit, if it is known
+    mirrored: tuple[bool, ...] = ()  # of each contour: whether its source is seen in a mirror
 
 
 # Millimeters of the units that can be asked for, and of those that DXF has a number for.
@@ -93,7 +94,7 @@ def factor(suffix: str, unit: float | None, units: str | None) -> float:
         How many millimeters one unit of the coordinates is.
     units : {"mm", "inch"} or None
     """
-    if unit is None or suffix not in GCODE | {".dxf"}:
+    if unit is None or suffix not in Y_UP:
         return 1.0
     if units is None and suffix == ".dxf" and unit in DXF_UNITS:
         return 1.0
@@ -101,10 +102,15 @@ def factor(suffix: str, unit: float | None, units: str | None) -> float:
     return 1.0 if abs(found - 1.0) <= _PRINTED else found
 
 
+def is_used(suffix: str, name: str) -> bool:
+    """Whether a format has a use for an option; all have for those that place contours."""
+    return name not in _USE or suffix in _USE[name]
+
+
 def check_options(suffix: str, **given: Any) -> None:
     """Refuse what a format cannot use: arcs, units, milling."""
     for name, value in given.items():
-        if value and suffix not in _USE[name]:
+        if value and not is_used(suffix, name):
             raise InputError(
                 f"expected {name} only for {', '.join(sorted(_USE[name]))}, got it for {suffix}: "
                 "leave it out, or name another file"
@@ -118,4 +124,6 @@ def check_options(suffix: str, **given: Any) -> None:
 
 
 GCODE = frozenset({".nc", ".ngc", ".gcode"})
-_USE = {"arcs": GCODE | {".dxf", ".svg"}, "units": GCODE | {".dxf"}, "milling": GCODE}
+# Formats in which y points up, and those in which it points down; the others have no axes.
+Y_UP, Y_DOWN = GCODE | {".dxf"}, frozenset({".svg"})
+_USE = {"arcs": Y_UP | Y_DOWN, "units": Y_UP, "milling": GCODE}

@@ -9,7 +9,7 @@ import numpy as np
 
 from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind, elements, unfolded
-from splinesdf.contours.contour import Contour, box, evaluate, halve, mirrored
+from splinesdf.contours.contour import Contour, box, evaluate, halve
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.writers.options import Options
 
@@ -32,11 +32,9 @@ _COLORS = {-1: "#1f77b4", 0: "#000000", 1: "#d62728"}  # inside, the shape, outs
 def svg_text(contours: Sequence[Contour], options: Options) -> str:
     """A drawing with one group per distance and one path per contour.
 
-    SVG's y axis points down: contours of a source whose y axis points up are mirrored, so that
-    the picture is upright.
+    Its viewBox is around them. Which page they are of stands beside it, as `read` takes it.
     """
-    drawn = [contour if contour.y_down else mirrored(contour) for contour in contours]
-    xmin, ymin, xmax, ymax = box(drawn)
+    xmin, ymin, xmax, ymax = box(contours)
     size = max(xmax - xmin, ymax - ymin)
     margin = _MARGIN * size
     view = [xmin - margin, ymin - margin, xmax - xmin + 2 * margin, ymax - ymin + 2 * margin]
@@ -46,19 +44,29 @@ def svg_text(contours: Sequence[Contour], options: Options) -> str:
         size_said = f'width="{width}" height="{height}" '
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size_said}viewBox="{_numbers(view)}" '
+        f'data-page="{_page(contours)}" '
         'data-stroke="centre">',  # so that `read` takes the strokes for closed lines
         f'<g fill="none" stroke-width="{size / 400.0:.6g}" stroke-linejoin="round">',
     ]
-    for distance in sorted({contour.distance for contour in drawn}):
+    for distance in sorted({contour.distance for contour in contours}):
         color = _COLORS[int(np.sign(distance))]
         lines.append(f'<g data-distance="{float(distance)!r}" stroke="{color}">')
         lines += [
             f'<path d="{path_data(contour, options.tolerance, arcs=options.arcs)}"/>'
-            for contour in drawn
+            for contour in contours
             if contour.distance == distance
         ]
         lines.append("</g>")
     return "\n".join([*lines, "</g>", "</svg>"]) + "\n"
+
+
+def _page(contours: Sequence[Contour]) -> str:
+    """The page that all contours are of as a viewBox is written, or "none"."""
+    pages = {contour.page for contour in contours}
+    page = pages.pop() if len(pages) == 1 else None
+    if page is None:
+        return "none"
+    return _numbers([page[0], page[1], page[2] - page[0], page[3] - page[1]])
 
 
 def path_data(contour: Contour, tolerance: float, *, arcs: bool = False) -> str:

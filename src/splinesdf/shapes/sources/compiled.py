@@ -312,8 +312,10 @@ def _distinct(points: ArrayLike) -> Floats:
         raise InputError(f"expected points of shape (n, 2), got shape {corners.shape}")
     if not np.isfinite(corners).all():
         raise InputError("expected finite points, got NaN or infinity")
+    if not len(corners):
+        raise InputError("expected at least 3 distinct points, got none")
     largest_coordinate(corners)
-    near = NOTHING * float(np.ptp(corners, axis=0).max(initial=0.0))
+    near = NOTHING * float(np.ptp(corners, axis=0).max())
     some = np.any(np.abs(corners - np.roll(corners, 1, axis=0)) > near, axis=1)
     # A single place is left if there is no other.
     corners = corners[some] if some.any() else corners[:1]

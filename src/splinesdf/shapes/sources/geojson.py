@@ -11,16 +11,15 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.limits import check_limit
 from splinesdf.shapes.loops import check_count
-from splinesdf.shapes.region import Loops, region
+from splinesdf.shapes.region import Loops, united_regions
 from splinesdf.shapes.sources.compiled import polygon
 
 TYPES = frozenset(
     ("FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
      "MultiPoint", "LineString", "MultiLineString", "LinearRing")
 )  # fmt: skip
-# Geometries within geometries. More: Python's calls run out; nothing that is drawn has more.
-_DEEPEST = 100
 
 
 class Polygons(NamedTuple):
@@ -30,6 +29,8 @@ class Polygons(NamedTuple):
     left_out: Counter[str]
     has_z: list[bool]  # one True as soon as a point has more than two numbers
     corners: list[int]  # how many those of the first, the first two, ... have; 0 before
+    elements: list[str]  # names of features and of geometries outside of these
+    owner: list[int]  # of each polygon: which of the elements it is of
 
     def notes(self) -> tuple[str, ...]:
         """One line for each kind of thing that a shape cannot hold."""
@@ -41,6 +42,11 @@ class Polygons(NamedTuple):
             notes.append("left out: the third coordinate of points")
         return tuple(notes)
 
+    def nothing(self) -> str:
+        """What is said if there is no polygon."""
+        words = ", ".join(f"{count} {name}" for name, count in self.left_out.items())
+        return f"expected polygons, got {words or 'none'}"
+
     def united(self, fill: str | None) -> tuple[Loops, str]:
         """Loops around the union of all, and their rule. Holes are so by where they stand.
 
@@ -50,18 +56,17 @@ class Polygons(NamedTuple):
             If there is no polygon.
         """
         if not self.rings:
-            words = ", ".join(f"{count} {name}" for name, count in self.left_out.items())
-            raise InputError(f"expected polygons, got {words or 'none'}")
-        parts = [[polygon(ring) for ring in rings] for rings in self.rings]
-        rule = fill or "evenodd"
-        if len(parts) == 1:
-            return parts[0], rule
-        return [loop for part in parts for loop in region(part, rule)], "nonzero"
+            raise InputError(self.nothing())
+        return united_regions([(loops, fill or "evenodd") for loops in self.polygons()])
+
+    def polygons(self) -> list[Loops]:
+        """The loops of each polygon, its outline first."""
+        return [[polygon(ring) for ring in rings] for rings in self.rings]
 
 
 def nothing_found() -> Polygons:
     """No polygons yet."""
-    return Polygons([], Counter(), [], [0])
+    return Polygons([], Counter(), [], [0], [], [])
 
 
 def polygons_of(value: Any) -> Polygons:
@@ -71,9 +76,9 @@ def polygons_of(value: Any) -> Polygons:
     return found
 
 
-def _collect(value: Any, found: Polygons, depth: int) -> None:
-    if depth > _DEEPEST:
-        raise InputError(f"expected geometries nested up to {_DEEPEST} deep, got deeper ones")
+def _collect(value: Any, found: Polygons, depth: int, *, named: bool = False) -> None:
+    """Add the polygons of an object; if it is ``named``, they are of the last element."""
+    check_limit("nesting", depth, "geometries within one another")
     if value is None:
         return
     kind = value.get("type") if isinstance(value, Mapping) else None
@@ -83,17 +88,31 @@ def _collect(value: Any, found: Polygons, depth: int) -> None:
         for feature in _list(value, "features"):
             _collect(feature, found, depth + 1)
     elif kind == "Feature":
-        _collect(value.get("geometry"), found, depth + 1)
+        found.elements.append(_name_of(value, len(found.elements) + 1))
+        _collect(value.get("geometry"), found, depth + 1, named=True)
     elif kind == "GeometryCollection":
         for geometry in _list(value, "geometries"):
-            _collect(geometry, found, depth + 1)
-    elif kind == "Polygon":
-        add_polygon(_list(value, "coordinates"), found)
-    elif kind == "MultiPolygon":
-        for rings in _list(value, "coordinates"):
-            add_polygon(rings, found)
+            _collect(geometry, found, depth + 1, named=named)
     else:
-        found.left_out[kind] += 1
+        if not named:
+            found.elements.append(f"{kind} {len(found.elements) + 1}")
+        if kind == "Polygon":
+            add_polygon(_list(value, "coordinates"), found)
+        elif kind == "MultiPolygon":
+            for rings in _list(value, "coordinates"):
+                add_polygon(rings, found)
+        else:
+            found.left_out[kind] += 1
+
+
+def _name_of(feature: Mapping[str, Any], number: int) -> str:
+    """A feature's id or name, else its number."""
+    properties = feature.get("properties")
+    named = properties.get("name") if isinstance(properties, Mapping) else None
+    for name in (feature.get("id"), named):
+        if isinstance(name, str | int | float) and not isinstance(name, bool) and str(name):
+            return f"{name:g}" if isinstance(name, float) else str(name)
+    return f"Feature {number}"
 
 
 def _list(value: Mapping[str, Any], key: str) -> Sequence[Any]:
@@ -104,12 +123,13 @@ def _list(value: Mapping[str, Any], key: str) -> Sequence[Any]:
 
 
 def add_polygon(rings: Any, found: Polygons) -> None:
-    """Add a polygon's rings, its outline first."""
+    """Add a polygon's rings, its outline first, to the last element."""
     if not isinstance(rings, list | tuple):
         raise InputError("expected a list of rings in a Polygon, got something else")
     corners = [_ring(ring, found) for ring in rings]
     if corners:
         found.rings.append(corners)
+        found.owner.append(len(found.elements) - 1)
         found.corners.append(found.corners[-1] + sum(map(len, corners)))
         check_count(found.corners[-1])
 

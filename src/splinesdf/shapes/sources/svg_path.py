@@ -18,7 +18,8 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
-from splinesdf.shapes.loops import TooMuch, check_count
+from splinesdf.ground.limits import TooMuch
+from splinesdf.shapes.loops import check_count
 from splinesdf.shapes.sources.compiled import compile_arc
 
 # What follows each command: n a number, f a flag (one digit, which needs no separator).
