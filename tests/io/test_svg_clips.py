@@ -56,10 +56,13 @@ CASES = {
         f"<mask id='m' mask='url(#n)'>{WHITE}</mask>{MASKED}"
     ),
     "a mask's frame in the user's units": (
-        f"<mask id='m' maskUnits='userSpaceOnUse' x='10' y='20' width='30' height='50'>{WHITE}"
+        f"<mask id='m' maskUnits='userSpaceOnUse' x='10' y='20%' width='30%' height='50'>{WHITE}"
         f"</mask>{MASKED}"
     ),
     "a mask's frame without area": f"<mask id='m' width='0'>{WHITE}</mask>{MASKED}{DISC}",
+    "a mask's frame that is less than nothing": (
+        f"<mask id='m' x='.5' width='-.3'>{WHITE}</mask>{MASKED}{DISC}"
+    ),
     "rules of media and fonts": (
         "<style>@font-face{font-family:a}rect{fill:none}@page{margin:0}</style>"
         f"{SMALL}{DISC}"
@@ -96,6 +99,10 @@ CASES = {
     ),
     "a text that is hidden": f"<text display='none'>a</text>{SMALL}",
     "a use of itself": f"<g id='a'><use href='#a'/>{SMALL}</g>{DISC}",
+    "a view beside the clip around it": (
+        f"<clipPath id='c'>{SMALL}</clipPath><g clip-path='url(#c)'><svg x='60' width='30' "
+        f"height='30'><rect width='9' height='9'/></svg></g>{DISC}"
+    ),
     "comments in a switch": f"<switch><!-- a -->{SMALL}{DISC}</switch>",
     "a move and no more": f"<path d='M5 5Z'/>{DISC}",
     "a font in percent": "<g font-size='150%'><rect width='2em' height='1em'/></g>",
