@@ -209,18 +209,29 @@ def normals(shape: ss.Shape, count: int, seed: int) -> tuple[np.ndarray, np.ndar
         for i in range(shape.piece_count)
     ]
     pieces = rng.choice(shape.piece_count, size=count, p=np.array(length) / np.sum(length))
-    points, ways = np.empty((count, 2)), np.empty((count, 2))
-    for k, (i, t) in enumerate(zip(pieces, rng.random(count), strict=True)):
-        control = oracles.piece(shape, i)
-        while len(control) > 2:
-            control = (1.0 - t) * control[:-1] + t * control[1:]
-        points[k] = (1.0 - t) * control[0] + t * control[1]
-        ways[k] = control[1] - control[0]
+    points, ways = places_and_ways(shape, pieces, rng.random(count))
     lengths = np.linalg.norm(ways, axis=1)
     sign = rng.choice([-1.0, 1.0], count)
     good = lengths > 0.0
     normal = np.stack([-ways[:, 1], ways[:, 0]], -1)[good] * (sign / lengths)[good, None]
     return points[good], normal
+
+
+def places_and_ways(
+    shape: ss.Shape, pieces: np.ndarray, t: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points of pieces at parameters, and the last two control points' difference: (n, 2) each."""
+    degrees = np.diff(shape.starts)[pieces] - 1
+    places, ways = np.empty((len(pieces), 2)), np.empty((len(pieces), 2))
+    for degree in np.unique(degrees):
+        rows = np.flatnonzero(degrees == degree)
+        s = t[rows, None, None]
+        control = shape.control[shape.starts[pieces[rows], None] + np.arange(degree + 1)]
+        while control.shape[1] > 2:
+            control = (1.0 - s) * control[:, :-1] + s * control[:, 1:]
+        places[rows] = (1.0 - s[:, 0]) * control[:, 0] + s[:, 0] * control[:, 1]
+        ways[rows] = control[:, 1] - control[:, 0]
+    return places, ways
 
 
 def check_missing(

@@ -60,29 +60,35 @@ def loop_counts(shape: ss.Shape, distance: float) -> list[int]:
 def counted(shape: ss.Shape, distance: float, fineness: float) -> list[int]:
     """The number on one lattice, its cells by a factor finer than need be."""
     side, corner = square(shape, distance)
+    side *= 1.0 + 0.01 * fineness  # so that no point is one of two lattices
     unit = side / 2.0**LEVELS
     target = COARSE * shape.size
     if distance != 0.0:
         target = min(target, OF_DISTANCE * abs(distance))
     target /= fineness
-    side *= 1.0 + 0.01 * fineness  # so that no point is one of two lattices
     level = LEVELS - 6
     axis = np.arange(64) << level
     cells = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
     wild = np.ones(len(cells), dtype=np.bool_)
     leaves = []
     while True:
-        nodes = (2 * cells[:, None] + (NINE << level)) * (0.5 * unit) + corner
-        found = ss.project(shape, nodes)
-        above = found.distance - distance
         size = unit * 2.0**level
-        pure = np.abs(above[:, 8]) > np.sqrt(0.5) * size
-        cone = in_cone(found, nodes)
+        middles = (2 * cells + (NINE[8] << level)) * (0.5 * unit) + corner
+        at_middles = ss.project(shape, middles)
+        pure = np.abs(at_middles.distance - distance) > np.sqrt(0.5) * size
+        # The other eight of a pure cell are on its middle's side, and nothing else is asked.
+        rest = np.flatnonzero(~pure)
+        own = ss.Projection(*(part[rest] for part in at_middles))
+        around, nodes = eight(shape, cells[rest], level, unit, corner)
+        below = np.repeat((at_middles.distance < distance)[:, None], 4, axis=1)
+        below[rest] = around.distance[:, :4] < distance
+        cone = np.zeros(len(cells))
+        cone[rest] = in_cone(own, around, middles[rest], nodes)
         fine = size <= target
-        hopeful = ~pure & fine & (cone < CONE) & ~alternates(above < 0.0)
+        hopeful = ~pure & fine & (cone < CONE) & ~alternates(below)
         if distance != 0.0:
-            middles = ss.Projection(*(part[hopeful, 8] for part in found))
-            hopeful[hopeful] = sure_cone(shape, nodes[hopeful, 8], middles, size) < CONE
+            some = ss.Projection(*(part[hopeful] for part in at_middles))
+            hopeful[hopeful] = sure_cone(shape, middles[hopeful], some, size) < CONE
         simple = pure | hopeful
         last = level == 1 or (fine and np.sum(~simple) > MOST)
         if last:
@@ -91,7 +97,7 @@ def counted(shape: ss.Shape, distance: float, fineness: float) -> list[int]:
         leaves.append(
             Leaves(
                 corners(cells[done], level),
-                above[done, :4] < 0.0,
+                below[done],
                 (pure & wild)[done],
                 ~simple[done],
             )
@@ -127,10 +133,30 @@ def square(shape: ss.Shape, distance: float) -> tuple[float, np.ndarray]:
     return side, middle - 0.5 * side
 
 
-def in_cone(found: ss.Projection, nodes: np.ndarray) -> np.ndarray:
+def eight(
+    shape: ss.Shape, cells: np.ndarray, level: int, unit: float, corner: np.ndarray
+) -> tuple[ss.Projection, np.ndarray]:
+    """What `project` says of the cells' corners and sides' middles, and these: (n, 8) each.
+
+    Neighbors share them: each is asked for once.
+    """
+    at = 2 * (cells[:, None] >> level) + NINE[:8]  # in half cells
+    _, first, which = np.unique(
+        (at[..., 0] << LEVELS + 1) + at[..., 1], return_index=True, return_inverse=True
+    )
+    nodes = (at.reshape(-1, 2)[first] << level) * (0.5 * unit) + corner
+    found, which = ss.project(shape, nodes), which.reshape(at.shape[:2])
+    return ss.Projection(*(part[which] for part in found)), nodes[which]
+
+
+def in_cone(
+    own: ss.Projection, around: ss.Projection, middles: np.ndarray, nodes: np.ndarray
+) -> np.ndarray:
     """The angle of the narrowest cone that has all gradients of a cell in it: (n,)."""
+    away = np.concatenate([nodes - around.point, (middles - own.point)[:, None]], axis=1)
+    distance = np.concatenate([around.distance, own.distance[:, None]], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        gradients = (nodes - found.point) / found.distance[..., None]
+        gradients = away / distance[..., None]
     angles = np.sort(np.arctan2(gradients[..., 1], gradients[..., 0]), axis=1)  # NaN last
     gaps = np.diff(angles, axis=1, append=angles[:, :1] + 2.0 * np.pi)
     cone: np.ndarray = 2.0 * np.pi - gaps.max(axis=1)
@@ -202,7 +228,7 @@ def counts(leaves: Leaves) -> list[int]:
     hard[where[leaves.hard]] = True
     start, end = where.ravel(), np.roll(where, -1, axis=1).ravel()
     result = set()
-    for forced in (None, True, False):
+    for forced in (None, True, False) if hard.any() else (None,):
         below = given if forced is None else np.where(hard, forced, given)
         same = below[start] == below[end]
         links = coo_array(

@@ -30,7 +30,7 @@ import splinesdf as ss
 from splinesdf.contours.contour import Contour
 from tests import oracles
 from tests.flat_contours import Line, flattened, on_arcs, winding_number
-from tests.offset_checks import Verdict
+from tests.offset_checks import Verdict, places_and_ways
 from tests.offset_count import loop_counts as quadtree_counts
 
 # Rounding of what is far from the origin: so many units in the last place of its coordinates.
@@ -341,21 +341,13 @@ def places_and_normals(shape: ss.Shape, count: int, seed: int) -> tuple[np.ndarr
         own = length[first:last] + 1e-3 * length[first:last].max()
         share[first:last] += own / own.sum() / shape.loop_count
     pieces = rng.choice(len(controls), size=count, p=share / share.sum())
-    places, normals = [], []
-    for number, (i, t) in enumerate(zip(pieces, rng.random(count), strict=True)):
-        t = (t, t, t, 0.0)[number % 4]  # at joints, too
-        control = controls[i]
-        while len(control) > 2:
-            control = (1.0 - t) * control[:-1] + t * control[1:]
-        way = control[1] - control[0]
-        if t == 0.0:
-            angle = rng.uniform(0.0, 2.0 * np.pi)
-            normal = np.array([np.cos(angle), np.sin(angle)])
-        elif (norm := float(np.hypot(*way))) > 0.0:
-            normal = np.array([-way[1], way[0]]) / norm
-        else:
-            continue
-        place = (1.0 - t) * control[0] + t * control[1]
-        places += [place, place]
-        normals += [normal, -normal]
-    return np.array(places).reshape(-1, 2), np.array(normals).reshape(-1, 2)
+    t = rng.random(count)
+    joint = np.arange(count) % 4 == 3
+    t[joint] = 0.0
+    angle = rng.uniform(0.0, 2.0 * np.pi, int(np.sum(t == 0.0)))
+    places, ways = places_and_ways(shape, pieces, t)
+    ways[t == 0.0] = np.stack([np.sin(angle), -np.cos(angle)], axis=-1)  # all around
+    some = ways.any(axis=1)
+    places, ways = places[some], ways[some] / np.hypot(*ways[some].T)[:, None]
+    normals = np.stack([-ways[:, 1], ways[:, 0]], axis=-1)
+    return np.repeat(places, 2, axis=0), np.stack([normals, -normals], axis=1).reshape(-1, 2)

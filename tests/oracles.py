@@ -10,9 +10,9 @@ Nothing here calls the package; of a `Shape` only the control points are read.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -25,6 +25,8 @@ import splinesdf as ss
 SNAP = 1e-13
 # Vertices of a line in the tree: short ones have small boxes, long ones make a small tree.
 _RUN = 8
+# Pairs of a side and a point at a time: 100 MB. Fewer take longer.
+_PAIRS = 500_000
 
 
 def polylines(shape: ss.Shape, deviation: float) -> list[np.ndarray]:
@@ -34,9 +36,11 @@ def polylines(shape: ss.Shape, deviation: float) -> list[np.ndarray]:
     that of a Bézier piece is at most d(d - 1) times its largest second difference. Steps are
     powers of two, so that a piece walked backwards has the same vertices, bit for bit.
     """
+    pieces = [piece(shape, i) for i in range(shape.piece_count)]
+    lines = _piece_polylines(pieces, deviation)
     result = []
     for first, last in zip(shape.loops[:-1], shape.loops[1:], strict=True):
-        parts = [piece_polyline(piece(shape, i), deviation)[:-1] for i in range(first, last)]
+        parts = [line[:-1] for line in lines[first:last]]
         result.append(np.concatenate([*parts, parts[0][:1]]))
     return result
 
@@ -45,34 +49,56 @@ def piece(shape: ss.Shape, index: int) -> np.ndarray:
     return shape.control[shape.starts[index] : shape.starts[index + 1]]
 
 
-def piece_polyline(control: np.ndarray, deviation: float) -> np.ndarray:
-    """One Bézier piece as a polyline with both ends."""
-    degree = len(control) - 1
-    bend = 0.0
-    if degree > 1:
-        second = np.linalg.norm(np.diff(control, 2, axis=0), axis=1)
-        bend = degree * (degree - 1) * float(second.max())
-    halvings = math.ceil(math.log2(max(1.0, math.sqrt(bend / (8.0 * deviation)))))
-    t = np.linspace(0.0, 1.0, 2**halvings + 1)[:, None, None]
-    points = np.broadcast_to(control, (len(t), *control.shape))
-    while points.shape[1] > 1:
-        points = (1.0 - t) * points[:, :-1] + t * points[:, 1:]
-    return points[:, 0].copy()
+def _piece_polylines(pieces: Sequence[np.ndarray], deviation: float) -> list[np.ndarray]:
+    """Each Bézier piece as a polyline with both ends; those of one degree and fineness at once."""
+    result = [np.empty((0, 2))] * len(pieces)
+    degrees = np.array([len(control) - 1 for control in pieces])
+    for degree in np.unique(degrees):
+        same = np.flatnonzero(degrees == degree)
+        controls = np.stack([pieces[i] for i in same])
+        bend = np.zeros(len(same))
+        if degree > 1:
+            second = np.linalg.norm(np.diff(controls, 2, axis=1), axis=2)
+            bend = degree * (degree - 1) * second.max(axis=1)
+        steps = np.maximum(1.0, np.sqrt(bend / (8.0 * deviation)))
+        halvings = np.ceil(np.log2(steps)).astype(np.int64)
+        for number in np.unique(halvings):
+            rows = np.flatnonzero(halvings == number)
+            t = np.linspace(0.0, 1.0, 2**number + 1)[:, None, None]
+            points = np.broadcast_to(controls[rows, None], (len(rows), len(t), degree + 1, 2))
+            while points.shape[2] > 1:
+                points = (1.0 - t) * points[:, :, :-1] + t * points[:, :, 1:]
+            for row, line in zip(rows, points[:, :, 0], strict=True):
+                result[same[row]] = line
+    return result
 
 
 def polyline_distance(lines: Iterable[np.ndarray], points: np.ndarray) -> np.ndarray:
     """Unsigned distance to the nearest of some polylines, by GEOS."""
-    runs = [
-        shapely.linestrings(line[first : first + _RUN + 1])
-        for line in lines
-        for first in range(0, len(line) - 1, _RUN)
-    ]
-    where, distance = shapely.STRtree(runs).query_nearest(
+    return _distance_to(_tree(lines), points)
+
+
+def _tree(lines: Iterable[np.ndarray]) -> shapely.STRtree:
+    return shapely.STRtree(np.concatenate([_runs(line) for line in lines]))
+
+
+def _distance_to(tree: shapely.STRtree, points: np.ndarray) -> np.ndarray:
+    where, distance = tree.query_nearest(
         shapely.points(points), all_matches=False, return_distance=True
     )
     result = np.full(len(points), np.nan)
     result[where[0]] = distance
     return result
+
+
+def _runs(line: np.ndarray) -> np.ndarray:
+    """The line in short ones, each of which starts where the one before it ends."""
+    first = np.arange(0, len(line) - 1, _RUN)
+    last = np.minimum(first + _RUN, len(line) - 1)
+    number = np.repeat(np.arange(len(first)), last - first + 1)
+    at = np.arange(len(number)) - number  # the last vertex of each run once more
+    lines: np.ndarray = shapely.linestrings(line[at], indices=number)
+    return lines
 
 
 def winding_number(rings: Iterable[np.ndarray], points: np.ndarray) -> np.ndarray:
@@ -84,19 +110,29 @@ def winding_number(rings: Iterable[np.ndarray], points: np.ndarray) -> np.ndarra
     x, y = points[order].T
     number = np.zeros(len(points), dtype=np.int64)
     for ring in rings:
-        low = np.searchsorted(y, np.minimum(ring[:-1, 1], ring[1:, 1]))
-        high = np.searchsorted(y, np.maximum(ring[:-1, 1], ring[1:, 1]))
-        for side in np.flatnonzero(low < high):
-            strip = slice(low[side], high[side])
-            (ax, ay), (bx, by) = ring[side], ring[side + 1]
-            left_of = (bx - ax) * (y[strip] - ay) - (x[strip] - ax) * (by - ay)
-            if by > ay:
-                number[strip] += left_of > 0
-            else:
-                number[strip] -= left_of < 0
+        start, end = ring[:-1], ring[1:]
+        low = np.searchsorted(y, np.minimum(start[:, 1], end[:, 1]))
+        high = np.searchsorted(y, np.maximum(start[:, 1], end[:, 1]))
+        count = high - low
+        for sides in _portions(count):
+            side = np.repeat(sides, count[sides])
+            first = np.cumsum(count[sides]) - count[sides]
+            at = np.arange(len(side)) - np.repeat(first, count[sides]) + low[side]
+            (ax, ay), (bx, by) = start[side].T, end[side].T
+            left_of = (bx - ax) * (y[at] - ay) - (x[at] - ax) * (by - ay)
+            number += np.bincount(at[(by > ay) & (left_of > 0)], minlength=len(number))
+            number -= np.bincount(at[(by < ay) & (left_of < 0)], minlength=len(number))
     result = np.empty_like(number)
     result[order] = number
     return result
+
+
+def _portions(count: np.ndarray) -> list[np.ndarray]:
+    """Sides whose strips hold some points, as many at a time as have so many points in all."""
+    some = np.flatnonzero(count)
+    total = np.cumsum(count[some])
+    cuts = np.searchsorted(total, np.arange(_PAIRS, count.sum(), _PAIRS))
+    return np.split(some, cuts)
 
 
 def is_filled(number: np.ndarray, fill: str) -> np.ndarray:
@@ -132,10 +168,23 @@ def signed_polyline_distance(
 ) -> np.ndarray | None:
     """Signed distance to the boundary of what the polylines fill, None if they fill nothing."""
     boundary = filled_boundary(rings, fill, snap=snap)
-    if not boundary:
-        return None
+    return _signed(rings, fill, _tree(boundary), points) if boundary else None
+
+
+def _signed(
+    rings: Sequence[np.ndarray], fill: str, boundary: shapely.STRtree, points: np.ndarray
+) -> np.ndarray:
     inside = is_filled(winding_number(rings, points), fill)
-    return np.where(inside, -1.0, 1.0) * polyline_distance(boundary, points)
+    return np.where(inside, -1.0, 1.0) * _distance_to(boundary, points)
+
+
+@lru_cache(maxsize=8)
+def _drawn(shape: ss.Shape, deviation: float) -> tuple[list[np.ndarray], shapely.STRtree] | None:
+    """The polylines of a shape and the boundary of what they fill; None if they fill nothing."""
+    rings = polylines(shape, deviation)
+    snap = SNAP * float(np.abs(shape.control).max())
+    boundary = filled_boundary(rings, shape.fill, snap=snap)
+    return (rings, _tree(boundary)) if boundary else None
 
 
 def sure_polyline_distance(
@@ -146,13 +195,10 @@ def sure_polyline_distance(
     Where contours cross at a small angle, or touch, the filled region's boundary moves by much
     more than the polylines deviate. Those are the places where two finenesses do not agree.
     """
-    snap = SNAP * float(np.abs(shape.control).max())
-    coarse, fine = (
-        signed_polyline_distance(polylines(shape, d), shape.fill, points, snap=snap)
-        for d in (deviation, deviation / 16.0)
-    )
-    if coarse is None or fine is None:
+    both = _drawn(shape, deviation), _drawn(shape, deviation / 16.0)
+    if both[0] is None or both[1] is None:
         return None
+    coarse, fine = (_signed(rings, shape.fill, tree, points) for rings, tree in both)
     return fine, np.abs(np.abs(coarse) - np.abs(fine)) < 2.0 * deviation
 
 
@@ -180,13 +226,12 @@ def exact_winding_number(corners: Iterable[np.ndarray], point: np.ndarray) -> in
     px, py = _exact(point)
     number = 0
     for ring in corners:
-        for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-            rising = int(b[1] > point[1]) - int(a[1] > point[1])
-            if rising == 0:
-                continue
-            (ax, ay), (bx, by) = _exact(a), _exact(b)
+        ends = np.roll(ring, -1, axis=0)
+        rising = (ends[:, 1] > point[1]).astype(int) - (ring[:, 1] > point[1])
+        for i in np.flatnonzero(rising):
+            (ax, ay), (bx, by) = _exact(ring[i]), _exact(ends[i])
             left_of = (bx - ax) * (py - ay) - (px - ax) * (by - ay)
-            number += rising * int(left_of * rising > 0)
+            number += int(rising[i]) * int(left_of * int(rising[i]) > 0)
     return number
 
 

@@ -19,11 +19,14 @@ import numpy as np
 
 MP = mpmath.MPContext()
 MP.dps = 40
+Number = mpmath.mpf
 # Samples of a curve at first, and of each stretch that is kept, two times over. The last step is
 # then 1e-6 of a curve: two minima that fall into one step differ by less than the step's fourth
 # power.
 _FIRST, _FINER = 32, 64
 _NEWTON_STEPS = 60
+# A step so short ends it. Newton squares it then: what is left is 1e-32 of a curve.
+_CLOSE = MP.mpf(10) ** -16
 # The float64 samples carry rounding, so stretches that miss by this share of the size stay in.
 _ROUNDING = 1e-12
 
@@ -36,7 +39,7 @@ class Curve(Protocol):
     def points(self, t: np.ndarray, origin: np.ndarray) -> np.ndarray:
         """Places in float64 relative to a point nearby: (n,), (2,) -> (n, 2)."""
 
-    def exact(self, t: mpmath.mpf) -> list[tuple[mpmath.mpf, mpmath.mpf]]:
+    def exact(self, t: Number) -> list[tuple[Number, Number]]:
         """Place, first and second derivative."""
 
 
@@ -57,7 +60,7 @@ class Bezier:
             points = (1.0 - s) * points[:, :-1] + s * points[:, 1:]
         return points[:, 0]
 
-    def exact(self, t: mpmath.mpf) -> list[tuple[mpmath.mpf, mpmath.mpf]]:
+    def exact(self, t: Number) -> list[tuple[Number, Number]]:
         columns = []
         for coefficients in self._power:
             value = slope = bend = MP.mpf(0)
@@ -86,6 +89,9 @@ class Fourier:
         stop: float,
     ) -> None:
         self._series, self._start, self._width = (x, y), start, stop - start
+        self._exact = [
+            [(k, _mp(a), _mp(b)) for k, (a, b) in series.items()] for series in self._series
+        ]
         sizes = [k * math.hypot(*ab) for series in (x, y) for k, ab in series.items()]
         self.speed = self._width * sum(sizes)
 
@@ -97,15 +103,16 @@ class Fourier:
         ]
         return np.stack(columns, -1) - origin
 
-    def exact(self, t: mpmath.mpf) -> list[tuple[mpmath.mpf, mpmath.mpf]]:
+    def exact(self, t: Number) -> list[tuple[Number, Number]]:
         w = MP.mpf(self._width)
         s = MP.mpf(self._start) + w * t
+        turns = {k: MP.cos_sin(k * s) for k in {k for series in self._series for k in series}}
         columns = []
-        for series in self._series:
+        for series in self._exact:
             value = slope = bend = MP.mpf(0)
-            for k, (a, b) in series.items():
-                cos, sin = MP.cos_sin(k * s)
-                even, odd = _mp(a) * cos + _mp(b) * sin, _mp(b) * cos - _mp(a) * sin
+            for k, a, b in series:
+                cos, sin = turns[k]
+                even, odd = a * cos + b * sin, b * cos - a * sin
                 value, slope, bend = value + even, slope + k * odd, bend - k * k * even
             columns.append((value, slope * w, bend * w * w))
         return list(zip(*columns, strict=True))
@@ -170,32 +177,36 @@ def _minima(
 
 def _newton(curve: Curve, point: np.ndarray, start: float, step: float) -> float:
     """The distance at the foot near a parameter; the ends of the curve stop it."""
-    px, py = MP.mpf(float(point[0])), MP.mpf(float(point[1]))
+    at = MP.mpf(float(point[0])), MP.mpf(float(point[1]))
     low, high = MP.mpf(max(start - step, 0.0)), MP.mpf(min(start + step, 1.0))
     t = MP.mpf(start)
-    best = min(_squared(curve, px, py, end) for end in (low, high))
+    at_low, at_t, at_high = (_squared(curve, at, s) for s in (low, t, high))
+    best = min(at_low[0], at_high[0])
+    # Where it rises all the way, or falls, that is the least: halving would take long to end there.
+    if (at_low[1] >= 0) == (at_t[1] >= 0) == (at_high[1] >= 0):
+        return float(MP.sqrt(best))
     for _ in range(_NEWTON_STEPS):
-        (x, y), (dx, dy), (ddx, ddy) = curve.exact(t)
-        x, y = x - px, y - py
-        best = min(best, x * x + y * y)
-        h = x * dx + y * dy
+        square, h, slope = at_t
+        best = min(best, square)
         low, high = (t, high) if h < 0 else (low, t)
-        slope = dx * dx + dy * dy + x * ddx + y * ddy
         moved = t - h / slope if slope > 0 else low - 1
         if not low <= moved <= high:
             moved = (low + high) / 2
-        if abs(moved - t) < MP.mpf(10) ** -25:
+        close, t = abs(moved - t) < _CLOSE, moved
+        at_t = _squared(curve, at, t)
+        if close:
             break
-        t = moved
-    return float(MP.sqrt(min(best, _squared(curve, px, py, t))))
+    return float(MP.sqrt(min(best, at_t[0])))
 
 
-def _squared(curve: Curve, px: mpmath.mpf, py: mpmath.mpf, t: mpmath.mpf) -> mpmath.mpf:
-    x, y = curve.exact(t)[0]
-    return (x - px) ** 2 + (y - py) ** 2
+def _squared(curve: Curve, at: tuple[Number, Number], t: Number) -> tuple[Number, Number, Number]:
+    """The squared distance and halves of its derivatives: D, D' / 2, D'' / 2."""
+    (x, y), (dx, dy), (ddx, ddy) = curve.exact(t)
+    x, y = x - at[0], y - at[1]
+    return x * x + y * y, x * dx + y * dy, dx * dx + dy * dy + x * ddx + y * ddy
 
 
-def _mp(value: Fraction) -> mpmath.mpf:
+def _mp(value: Fraction) -> Number:
     return MP.mpf(value.numerator) / value.denominator
 
 

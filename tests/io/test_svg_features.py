@@ -71,8 +71,8 @@ CASES = {
         f"<rect width='50' height='50' fill='url(#g)'/>{DISC}"
     ),
     "a gradient of another one": (
-        "<linearGradient id='h'><stop/><stop offset='1' stop-opacity='0'/></linearGradient>"
-        "<radialGradient id='g' href='#h'/><rect width='50' height='50' fill='url(#h)'/>"
+        "<linearGradient id='h'><stop/><stop offset='1' stop-opacity='.5'/></linearGradient>"
+        "<radialGradient id='g' href='#h'/><rect width='50' height='50' fill='url(#g)'/>"
     ),
     "a transparent current color": (
         f"<g color='transparent'><rect width='50' height='50' fill='currentColor'/></g>{DISC}"

@@ -59,10 +59,13 @@ def followed(path: str, count: int = 4001) -> list[tuple[Floats, Floats]]:
 def swept(path: str, width: float, points: Floats) -> NDArray[np.bool_]:
     """Whether a segment across the path meets each point: where it is passed, near enough."""
     met = np.zeros(len(points), dtype=bool)
-    for on, along in followed(path):
-        for k, point in enumerate(points):
-            ahead = ((point - on) * along).sum(axis=1) > 0.0
-            near = np.hypot(*(point - on).T) <= 0.5 * width
+    for (on_x, on_y), (along_x, along_y) in (
+        (on.T.copy(), along.T.copy()) for on, along in followed(path)
+    ):
+        for k, (x, y) in enumerate(points):
+            dx, dy = x - on_x, y - on_y
+            ahead = dx * along_x + dy * along_y > 0.0
+            near = dx * dx + dy * dy <= 0.25 * width * width
             met[k] |= bool(np.any((ahead[1:] != ahead[:-1]) & near[1:]))
     return met
 
@@ -100,8 +103,9 @@ def test_round_strokes_are_what_is_near_the_path(name: str) -> None:
     shape = stroked(path, Pen(width, "round", "round"))
     points = grid(shape, 30)
     nearest = np.full(len(points), np.inf)
-    for on, _ in followed(path):
-        nearest = np.minimum(nearest, [np.hypot(*(point - on).T).min() for point in points])
+    for on_x, on_y in (on.T.copy() for on, _ in followed(path)):
+        square = [((x - on_x) ** 2 + (y - on_y) ** 2).min() for x, y in points]
+        nearest = np.minimum(nearest, np.sqrt(square))
     # Outside, the distance itself is what is left of the way to the path.
     distance = ss.signed_distance(shape, points)
     away = nearest > 0.5 * width + 0.01

@@ -64,13 +64,17 @@ def off_chord(points: Floats) -> Floats:
 def bezier_points(control: Floats, t: Floats) -> tuple[Floats, Floats]:
     """Points and derivatives of pieces (..., degree + 1, 2) at parameters (...)."""
     grid = np.broadcast_shapes(control.shape[:-2], t.shape)
-    points = np.broadcast_to(control, (*grid, *control.shape[-2:]))
-    t = t[..., None, None]
-    degree = points.shape[-2] - 1
-    while points.shape[-2] > 2:
-        points = (1.0 - t) * points[..., :-1, :] + t * points[..., 1:, :]
-    start, end = points[..., 0, :], points[..., 1, :]
-    return start + t[..., 0] * (end - start), degree * (end - start)
+    points, slopes = np.empty((*grid, 2)), np.empty((*grid, 2))
+    degree, s = control.shape[-2] - 1, 1.0 - t
+    # One coordinate of one control point at a time: NumPy is slow along axes as short as these.
+    for axis in (0, 1):
+        row = [control[..., k, axis] for k in range(degree + 1)]
+        while len(row) > 2:
+            row = [s * one + t * other for one, other in pairwise(row)]
+        start, end = row
+        points[..., axis] = start + t * (end - start)
+        slopes[..., axis] = degree * (end - start)
+    return points, slopes
 
 
 def evaluate_bezier(control: Floats, parameters: Floats) -> Floats:

@@ -66,14 +66,14 @@ class _Beside:
     offset: float | None  # None for the evolute
 
     def __call__(self, t: Floats) -> Floats:
-        points, first, second = _derivatives(self.control, t)
+        points, first, second, still = _derivatives(self.control, t)
         speed = np.hypot(first[:, 0], first[:, 1])
         normal = np.stack([-first[:, 1], first[:, 0]], axis=1) / speed[:, None]
         if self.offset is not None:
             return np.asarray(points + self.offset * normal)
         bend = _cross(self.control, t, first, second) / speed**3
         # Where handles have no length the curve bends without bound, about itself.
-        bent = (bend != 0.0) & ~_still(self.control, t)
+        bent = (bend != 0.0) & ~still
         radius = np.where(bent, 1.0 / np.where(bent, bend, 1.0), 0.0)
         return np.asarray(points + radius[:, None] * normal)
 
@@ -186,7 +186,7 @@ def _stretches(piece: Floats, half: float) -> list[_Stretch]:
 def _bend(piece: Floats, t: float) -> tuple[float, float]:
     """The cross product of the first two derivatives, and the speed."""
     at = np.array([t])
-    _, first, second = _derivatives(piece, at)
+    _, first, second, _ = _derivatives(piece, at)
     bend = float(_cross(piece, at, first, second)[0])
     return bend, float(np.hypot(*first[0]))
 
@@ -207,9 +207,9 @@ def _band(run: list[_Stretch], half: float) -> Loops:
 def _is_round(piece: Floats, half: float) -> bool:
     """Whether it bends by half the width throughout: an arc whose inner parallel is a point."""
     t = np.linspace(0.0, 1.0, 17)
-    if _still(piece, t).any():
+    _, first, second, still = _derivatives(piece, t)
+    if still.any():
         return False
-    _, first, second = _derivatives(piece, t)
     share = np.abs(_cross(piece, t, first, second)) * half / np.hypot(first[:, 0], first[:, 1]) ** 3
     # What rounding of the coordinates does to the second derivative, beside that of the piece.
     length = float(np.ptp(piece, axis=0).max())
@@ -266,18 +266,17 @@ def _beside(piece: Floats, low: float, high: float, offset: float | None) -> lis
     return compile_curve(curve)
 
 
-def _derivatives(control: Floats, t: Floats) -> tuple[Floats, Floats, Floats]:
-    points, _ = bezier_points(control, t)
+def _derivatives(control: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Bools]:
+    """Points, first and second derivatives, and where the piece has no speed."""
+    points, rate = bezier_points(control, t)
     # From differences: next to an end with a short handle they are small, and known all the same.
     slopes = (len(control) - 1) * np.diff(control, axis=0)
     first, second = bezier_points(slopes, t)
-    if len(slopes) < 2:
-        return points, first, np.zeros_like(first)
+    still = np.hypot(rate[:, 0], rate[:, 1]) <= _STILL * float(np.abs(slopes).max())
     # Where handles have no length the direction is that of the next difference.
-    still = _still(control, t)
     if still.any():
         first = np.where(still[:, None], np.where(t[:, None] < 0.5, second, -second), first)
-    return points, first, second
+    return points, first, second, still
 
 
 def _cross(control: Floats, t: Floats, first: Floats, second: Floats) -> Floats:
@@ -291,14 +290,6 @@ def _cross(control: Floats, t: Floats, first: Floats, second: Floats) -> Floats:
     a, b, c = 3.0 * np.diff(control, axis=0)
     ab, ac, bc = (one[0] * two[1] - one[1] * two[0] for one, two in ((a, b), (a, c), (b, c)))
     return np.asarray(2.0 * (ab * (1.0 - t) ** 2 + ac * t * (1.0 - t) + bc * t * t))
-
-
-def _still(control: Floats, t: Floats) -> Bools:
-    """Where a piece has no speed."""
-    slopes = np.diff(control, axis=0)
-    _, first = bezier_points(control, t)
-    most = (len(control) - 1) * float(np.abs(slopes).max())
-    return np.asarray(np.hypot(first[:, 0], first[:, 1]) <= _STILL * most)
 
 
 def end_tangent(piece: Floats, end: int) -> Floats:
