@@ -21,6 +21,7 @@ from splinesdf.cli.info import info
 from splinesdf.cli.offset import offset
 from splinesdf.cli.paper import paper
 from splinesdf.cli.query import query
+from splinesdf.cli.view import view
 
 
 def main() -> None:
@@ -63,5 +64,5 @@ def commands() -> None:
     """
 
 
-for _command in (fit, offset, query, paper, info, demo):
+for _command in (fit, offset, query, paper, info, demo, view):
     commands.add_command(_command)
