@@ -16,6 +16,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.meshes import Grid
 from splinesdf.meshes.quadtree import Quadtree
 from splinesdf.splines.spline import SplineSDF
 from splinesdf.web.levels import Level, level_files
@@ -99,8 +100,9 @@ def _head(spline: SplineSDF, version: str) -> dict[str, Any]:
 def _lines(spline: SplineSDF) -> tuple[Floats, Floats]:
     """The lines between the cells of the coarsest level, each way."""
     mesh = spline.mesh
-    if not isinstance(mesh, Quadtree):
+    if isinstance(mesh, Grid):
         return mesh.x, mesh.y
+    assert isinstance(mesh, Quadtree)
     xmin, ymin, xmax, ymax = mesh.domain
     m, n = mesh.shape
     return np.linspace(xmin, xmax, m + 1), np.linspace(ymin, ymax, n + 1)

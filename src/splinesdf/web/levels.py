@@ -79,19 +79,15 @@ def level_at(shape: Shape, distance: float) -> Level:
 
 
 def ready_distances(spline: SplineSDF) -> list[float]:
-    """Round distances from the deepest inside to the farthest that stays within the domain."""
-    depth = -float(spline.ordinates[:, :4].min())
+    """Round distances from the deepest inside outward, those of the domain."""
+    values = spline.ordinates[:, :4]
+    depth, room = -float(values.min()), float(values.max())
     if depth <= 0.0:
         return [0.0]
     step = _round_below(depth / _EACH_SIDE)
-    xmin, ymin, xmax, ymax = spline.domain
-    x, y = np.linspace(xmin, xmax, 65), np.linspace(ymin, ymax, 65)
-    border = [np.column_stack([x, np.full(65, edge)]) for edge in (ymin, ymax)]
-    border += [np.column_stack([np.full(65, edge), y]) for edge in (xmin, xmax)]
-    room = float(spline(np.concatenate(border)).min())
-    inside = range(-min(math.floor(depth / step), 2 * _EACH_SIDE), 0)
-    outside = range(1, min(math.floor(max(room, 0.0) / step), _EACH_SIDE) + 1)
-    return [step * number for number in (*inside, 0, *outside)]
+    inside = min(math.floor(depth / step), 2 * _EACH_SIDE)
+    outside = min(math.floor(max(room, 0.0) / step), _EACH_SIDE)
+    return [float(f"{step * number:.6g}") for number in range(-inside, outside + 1)]
 
 
 def _round_below(value: float) -> float:

@@ -125,8 +125,9 @@ def page_text(spline: SplineSDF, levels: Sequence[Level], *, live: bool = False)
 def policy(*, live: bool) -> str:
     """What the page may do: run its own code and style, known by their digests, and no request."""
     asks = "connect-src 'self'; " if live else ""
+    script, style = _digest(code()), _digest(_asset("page.css"))
     return (
-        f"default-src 'none'; script-src '{_digest(code())}'; style-src '{_digest(_asset('page.css'))}'; "
+        f"default-src 'none'; script-src '{script}'; style-src '{style}'; "
         f"img-src data: blob:; worker-src blob:; {asks}base-uri 'none'; form-action 'none'"
     )
 

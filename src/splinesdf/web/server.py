@@ -18,7 +18,7 @@ from urllib.parse import parse_qs, urlsplit
 
 from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError, SplineSDFError
-from splinesdf.ground.arrays import finite
+from splinesdf.ground.arrays import finite, shown
 from splinesdf.splines.spline import SplineSDF
 from splinesdf.web.block import check_spline
 from splinesdf.web.levels import KINDS, level_at, level_file
@@ -109,14 +109,12 @@ class _Questions:
 
 
 def _numbers(query: str) -> dict[str, float]:
-    """The finite numbers of a question; other words are passed over."""
-    result = {}
-    for name, texts in parse_qs(query, max_num_fields=8).items():
-        try:
-            result[name] = finite(float(texts[-1]), name)
-        except ValueError as error:
-            raise InputError(f"expected a finite number for {name!r:.20}") from error
-    return result
+    """The numbers of a question."""
+    try:
+        given = parse_qs(query, max_num_fields=8)
+        return {name: finite(float(texts[-1]), "number") for name, texts in given.items()}
+    except ValueError as error:
+        raise InputError(f"expected a few finite numbers, got {shown(query)}") from error
 
 
 def _one(given: dict[str, float], name: str) -> float:
@@ -139,7 +137,7 @@ def _handler(answer: Callable[[str], Answer]) -> type[BaseHTTPRequestHandler]:
 
         server_version, sys_version = "splinesdf", ""
 
-        def do_GET(self) -> None:  # noqa: N802
+        def do_GET(self) -> None:
             """Answer it, if it was meant for this machine."""
             host = self.headers.get("Host", "").rpartition(":")[0]
             # A page elsewhere may have its own name point here (DNS rebinding): names are refused.

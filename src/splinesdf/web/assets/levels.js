@@ -50,6 +50,6 @@ export function describe(level) {
 /** Three digits, rounded up, so that a bound never says too little. */
 export function short(value) {
   if (!(value > 0)) return '0';
-  const unit = 10 ** (Math.floor(Math.log10(value)) - 2);
-  return (Math.ceil(value / unit - 1e-9) * unit).toPrecision(3);
+  const power = Math.floor(Math.log10(value)) - 2, up = Math.ceil(value / 10 ** power - 1e-9) * 10 ** power;
+  return power < -5 ? up.toExponential(2) : up.toPrecision(3);
 }

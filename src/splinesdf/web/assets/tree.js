@@ -59,6 +59,9 @@ export function interval(lines, value) {
   return low;
 }
 
+// 2 to the power of minus a level; powers are dear where each of 100,000 leaves asks for one.
+export const HALVED = Float64Array.from({ length: 64 }, (_, level) => 2 ** -level);
+
 /**
  * Where line `i` of a level's lattice is, in pixels from the view's center.
  *
@@ -67,7 +70,7 @@ export function interval(lines, value) {
  */
 export function lineAt(lines, center, scale, level, i) {
   const root = i >> level, part = i - (root << level), start = (lines[root] - center) * scale;
-  return part === 0 ? start : start + part * ((lines[root + 1] - lines[root]) * scale / 2 ** level);
+  return part === 0 ? start : start + part * ((lines[root + 1] - lines[root]) * scale * HALVED[level]);
 }
 
 /** Leaves that meet rows `top` to `bottom` of the picture, or null if there are more than `most`. */
@@ -76,23 +79,24 @@ export function visibleLeaves(tree, job, top = 0, bottom = job.height, most = In
   // One pixel more all around: a leaf too many costs nothing, one too few leaves pixels empty.
   const half = job.width / 2 + 1, ends = [top - job.height / 2 - 1, bottom - job.height / 2 + 1];
   const low = down > 0 ? ends[0] : -ends[1], high = down > 0 ? ends[1] : -ends[0];
-  const meets = node => {
-    const l = level[node], i = column[node], j = row[node];
-    return lineAt(xs, cx, scale, l, i) <= half && lineAt(xs, cx, scale, l, i + 1) >= -half
-      && lineAt(ys, cy, scale, l, j) <= high && lineAt(ys, cy, scale, l, j + 1) >= low;
-  };
   const found = [], stack = [];
+  // A node that is seen as a whole goes as ~node: nothing below it need be looked at.
+  const look = node => {
+    const l = level[node], i = column[node], j = row[node];
+    const x0 = lineAt(xs, cx, scale, l, i), x1 = lineAt(xs, cx, scale, l, i + 1);
+    const y0 = lineAt(ys, cy, scale, l, j), y1 = lineAt(ys, cy, scale, l, j + 1);
+    if (x0 > half || x1 < -half || y0 > high || y1 < low) return;
+    stack.push(x0 >= -half && x1 <= half && y0 >= low && y1 <= high ? ~node : node);
+  };
   const first = Math.max(0, interval(xs, cx - half / scale) - 1), last = Math.min(m - 1, interval(xs, cx + half / scale) + 1);
   const lowest = Math.max(0, interval(ys, cy + low / scale) - 1), highest = Math.min(n - 1, interval(ys, cy + high / scale) + 1);
-  for (let i = first; i <= last; i++) for (let j = lowest; j <= highest; j++) {
-    if (meets(i * n + j)) stack.push(i * n + j);
-  }
+  for (let i = first; i <= last; i++) for (let j = lowest; j <= highest; j++) look(i * n + j);
   while (stack.length) {
-    const node = stack.pop();
-    if (child[node] < 0) {
+    const top = stack.pop(), whole = top < 0, node = whole ? ~top : top, next = child[node];
+    if (next < 0) {
       found.push(node);
       if (found.length > most) return null;
-    } else for (let q = child[node]; q < child[node] + 4; q++) if (meets(q)) stack.push(q);
+    } else for (let q = next; q < next + 4; q++) if (whole) stack.push(~q); else look(q);
   }
   return found;
 }
