@@ -151,8 +151,8 @@ def test_mesh_fades_where_cells_are_small(pages: Pages, splines: Splines, open_p
         seen = ((pixels >= 2) & (pixels < np.array([[640 - 2], [480 - 2]]))).all(axis=0)
         shares = changed[pixels[1, seen], pixels[0, seen]].mean()
         assert np.count_nonzero(seen) > 100
-        # At a corner four cells meet, and some may be small: there is a line on most sides.
-        assert shares > 0.9 if corner else shares < 0.1
+        # At a corner four cells meet, and the pixel may lie in a small one.
+        assert shares > 0.7 if corner else shares == 0.0
 
 
 def test_without_webgl_the_picture_is_the_same(pages: Pages, open_page: Open) -> None:

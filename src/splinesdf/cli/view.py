@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import webbrowser
 from typing import Any
 
 import click
@@ -20,7 +19,6 @@ from splinesdf.cli.shapes import (
 )
 from splinesdf.web.block import check_spline
 from splinesdf.web.page import check_page_path, write_page
-from splinesdf.web.server import make_server
 
 # Cells beyond which a browser takes seconds to begin; measured at 666,000: three.
 _MANY = 300_000
@@ -66,6 +64,11 @@ def view(
             write_page(page, spline, distances=distances or None)
         report.print_written(page)
         return
+    # Not above: no other command needs a server.
+    import webbrowser
+
+    from splinesdf.web.server import make_server
+
     with working("making the page"):
         server, address = make_server(spline)
     click.echo(f"{address}\nCtrl+C ends it.")

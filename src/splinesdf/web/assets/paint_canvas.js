@@ -4,12 +4,12 @@
 import { HALVED, lineAt, visibleLeaves } from './tree.js';
 import { mixed } from './colors.js';
 
-// Pixels from a line within which the gradient is needed: half the thickest line, and smoothing.
-const REACH = 2.2;
+// What of a gradient above 1 lines stay whole for: there they reach over more of the value.
+const STEEPEST = 1.25;
 // The slope that a line's width is measured by, at least, as a share of a distance's slope 1: on a
 // ridge the gradient vanishes and lines would become as wide as the window.
 const FLATTEST = 0.25;
-// Shares with which lines are mixed in, and half the widths of the strong ones, in pixels.
+// Shares with which lines are mixed in, and half the widths of the strong ones, in pixels of CSS.
 const FAINT = 0.45, MESH = 0.6, ZERO = 1.1, LEVEL = 1.3;
 // Pixels a cell below which the mesh begins to fade, and below which it is gone.
 const FADING = 6, GONE = 3;
@@ -26,7 +26,8 @@ export function paintRows(tree, job, words, top, bottom, values = null) {
   const { xs, ys, power, level: levels, column, row, cellOf } = tree;
   const { cx, cy, scale, down, width, fills, spacing, level, mesh } = job;
   // Centers of pixels are at whole numbers less these from the view's center.
-  const midX = width / 2 - 0.5, midY = job.height / 2 - 0.5, reach = REACH / scale, rate = 1 / spacing;
+  const midX = width / 2 - 0.5, midY = job.height / 2 - 0.5, rate = 1 / spacing;
+  const reach = STEEPEST * (LEVEL * job.thick + 0.5) / scale;
   const middle = fills.length / 2, fillRate = middle / job.range, most = fills.length - 1;
   for (const node of visibleLeaves(tree, job, top, bottom)) {
     const depth = levels[node], i = column[node], j = row[node];
@@ -73,10 +74,10 @@ function meshed(color, s, t, w, h, mesh, share) {
 
 /** A color with level lines over it; `gradient` is a pixel's change of the value v. */
 function lined(color, v, gradient, band, off, job) {
-  const slope = Math.max(gradient, FLATTEST / job.scale), faint = job.bands ? 1 - band / slope : 0;
-  if (faint > 0) color = mixed(color, job.line, FAINT * faint);
-  const zero = ZERO + 0.5 - Math.abs(v) / slope;
+  const slope = Math.max(gradient, FLATTEST / job.scale), faint = job.bands ? 0.5 + job.thick / 2 - band / slope : 0;
+  if (faint > 0) color = mixed(color, job.line, FAINT * Math.min(1, faint));
+  const zero = ZERO * job.thick + 0.5 - Math.abs(v) / slope;
   if (zero > 0) color = mixed(color, job.line, zero > 1 ? 1 : zero);
-  const near = LEVEL + 0.5 - off / slope;
+  const near = LEVEL * job.thick + 0.5 - off / slope;
   return near > 0 ? mixed(color, job.levelColor, near > 1 ? 1 : near) : color;
 }

@@ -12,7 +12,7 @@ export function makeJob(view, { level, bands, mesh }) {
   const colors = theme(), [xmin, ymin, xmax, ymax] = view.box;
   return {
     cx: view.cx, cy: view.cy, scale: view.scale, down: view.down, width: view.width, height: view.height,
-    level, bands, mesh, spacing: nice(BETWEEN * view.ratio / view.scale),
+    level, bands, mesh, thick: view.ratio, spacing: nice(BETWEEN * view.ratio / view.scale),
     range: RANGE * Math.max(xmax - xmin, ymax - ymin), fills: fillTable(colors),
     ground: word(colors.ground), line: word(colors.line), meshColor: word(colors.mesh),
     levelColor: word(colors.level), colors,
