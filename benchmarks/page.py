@@ -1,9 +1,9 @@
-"""The explorer page's speed and size: time to the first frame, milliseconds a frame, bytes a cell.
+"""The explorer page's speed and size: time to the first frame, milliseconds a frame, bytes.
 
-    python -m benchmarks.page [--tolerance 1e-3 1.5e-4] [--size 1280x800] [--frames 25] [--flags ...]
+    python -m benchmarks.page [--tolerance 1e-3 1.5e-4] [--size 1280x800] [--flags ...]
 
-Tolerances are shares of the part's size. Frames are painted one after the other, the view moved by a
-pixel between them: least and median, at ×1, ×30 and ×10⁶. Needs chromium and Playwright.
+Tolerances are shares of the part's size. Frames are painted one after the other, the view moved
+by a pixel between them: least and median, at ×1, ×30 and ×10⁶. Needs chromium and Playwright.
 """
 
 from __future__ import annotations

@@ -18,8 +18,13 @@ addEventListener('securitypolicyviolation',
 
 
 _COLORS = """() => {
-  const c = document.getElementById('picture');
-  const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+  const gl = document.getElementById('gl'), c = document.createElement('canvas');
+  const shown = gl.hidden ? document.getElementById('picture') : gl;
+  c.width = shown.width;
+  c.height = shown.height;
+  const pen = c.getContext('2d', { willReadFrequently: true });
+  pen.drawImage(shown, 0, 0);
+  const d = pen.getImageData(0, 0, c.width, c.height).data;
   let s = '';
   for (let i = 0; i < d.length; i += 8192) s += String.fromCharCode(...d.subarray(i, i + 8192));
   return [btoa(s), c.width, c.height];

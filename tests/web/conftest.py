@@ -23,7 +23,8 @@ _NAMES = ("chromium", "chromium-browser", "google-chrome")
 Open = Callable[..., Shown]
 
 
-def _missing(reason: str) -> None:
+def missing(reason: str) -> None:
+    """Skip a test, or fail it where a browser is required."""
     if os.environ.get("SPLINESDF_BROWSER") == "required":
         pytest.fail(f"SPLINESDF_BROWSER=required, but {reason}")
     pytest.skip(reason)
@@ -34,11 +35,11 @@ def launch() -> Iterator[Callable[..., Any]]:
     """Start a browser, with flags if wanted; one for each set of flags."""
     path = next(filter(None, map(shutil.which, _NAMES)), None)
     if path is None:
-        _missing("no chromium is installed: apt-get install chromium")
+        missing("no chromium is installed: apt-get install chromium")
     try:
         from playwright.sync_api import sync_playwright
     except ImportError:
-        _missing("Playwright is not installed: pip install playwright")
+        missing("Playwright is not installed: pip install playwright")
     with sync_playwright() as playwright:
         running: dict[tuple[str, ...], Any] = {}
 

@@ -19,7 +19,7 @@ _PIXELS = 2000
 _ZOOMS = (1.0, 1e3, 1e6, 1e7)
 
 
-def _places(spline: ss.SplineSDF) -> dict[str, tuple[float, float]]:
+def places(spline: ss.SplineSDF) -> dict[str, tuple[float, float]]:
     """On the curve in the largest and in the smallest cell that it meets, and at a corner."""
     ends = spline.ordinates[:, :4]
     met = np.flatnonzero((ends.min(axis=1) < 0.0) & (ends.max(axis=1) > 0.0))
@@ -40,7 +40,7 @@ def test_values_at_pixels_are_the_splines(
     spline, page = splines(name), open_page(pages(name))
     largest = max(map(abs, spline.domain))
     generator = np.random.default_rng(7)
-    for place, (x, y) in _places(spline).items():
+    for place, (x, y) in places(spline).items():
         for zoom in _ZOOMS:
             view = page.set(cx=x, cy=y, zoom=zoom)
             size = int(view["width"]), int(view["height"])

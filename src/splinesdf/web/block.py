@@ -70,6 +70,7 @@ def packed(spline: SplineSDF, levels: Sequence[Level], *, version: str, live: bo
     head = _head(spline, version) | {
         "layout": _LAYOUT,
         "nodes": len(split),
+        "uniform": isinstance(mesh, Quadtree),
         "live": live,
         "dxf": live or "dxf" in files,
         "levels": listed,

@@ -1,9 +1,9 @@
-// Begin: unpack the numbers, start the page, and say so if anything is wrong with them.
+// Begin: in a worker wait for jobs; in the page unpack the numbers, start the page, and say so if anything is wrong with them.
 import { readBlock } from './data.js';
 import { makeTree } from './tree.js';
-import { canvasPainter } from './painter.js';
 import { startPage } from './page.js';
 import { element, fail } from './panel.js';
+import { serveJobs } from './workers.js';
 
 async function main() {
   try {
@@ -11,11 +11,11 @@ async function main() {
       return fail('This page needs a browser of 2023 or later: Chrome 80, Firefox 113, Safari 16.4.');
     }
     const content = await readBlock(element('block').textContent);
-    const page = startPage(content, makeTree(content.head, content.arrays), canvasPainter);
+    const page = startPage(content, makeTree(content.head, content.arrays));
     window.splinesdf = page;  // tests ask it; so may you, in the console
     document.documentElement.dataset.ready = String(performance.now());
   } catch (error) {
     fail(`This page is damaged: ${error.message}. Make it anew by splinesdf view --html.`);
   }
 }
-main();
+if (typeof document === 'undefined') serveJobs(); else main();

@@ -5,24 +5,28 @@ import { ask, describe, liveLevel, nearestLevel, readyFile, readyLevels } from '
 import { copyText, download, linkText, readLink } from './link.js';
 import { drawOverlay } from './overlay.js';
 import { makeJob } from './painter.js';
+import { makePainters } from './painters.js';
 import { element, makePanel } from './panel.js';
 import { answerLines, answersAt, boundLine, makeAsker, rulerLines } from './readout.js';
 import { digits, fitWhole, lookAt, makeView, pan, pixelOf, resize, worldAt, zoomAt } from './view.js';
 
-// Milliseconds for which the slider rests before the exact offset is asked for; zoom of a key, of a
-// button; and the share of a pixel's width by which a key moves the offset.
-const REST = 250, BY_KEY = 1.3, BY_BUTTON = 1.5;
+// Milliseconds for which the slider rests before the exact offset is asked for, and the window before
+// painters are compared; zoom of a key, and of a button.
+const REST = 250, SETTLED = 400, BY_KEY = 1.3, BY_BUTTON = 1.5;
 
 /** Start it; returns what tests ask and set. */
-export function startPage({ head, arrays }, tree, makePainter) {
-  const view = makeView(tree, head.y_down), painter = makePainter(element('picture'), tree);
+export function startPage(content, tree) {
+  const { head, arrays } = content;
+  const view = makeView(tree, head.y_down), painter = makePainters(element('picture'), element('gl'), content, tree);
   const over = element('over'), pen = over.getContext('2d');
   const ready = readyLevels(head, arrays);
   const show = { level: 0, bands: true, mesh: false, exact: true, ruling: false, ruler: [] };
   let exact = null, hover = null, waiting = false, rest = 0, running = null, segments = 0;
 
-  function paint() {
-    painter.paint(makeJob(view, show));
+  /** The picture, then what lies over it, lest they are of two views. */
+  function paint(inThisThread) {
+    const later = painter.paint(makeJob(view, show), inThisThread);
+    if (later) return later.then(paintOver);
     paintOver();
   }
   function paintOver() {
@@ -174,27 +178,34 @@ export function startPage({ head, arrays }, tree, makePainter) {
   panel.read(null);
   measure();
   follow(readLink(location.hash));
-  addEventListener('resize', () => { measure(); redraw(); });
+  // Once the window has its size, WebGL is tried against the processor.
+  let settled = 0;
+  const compareSoon = () => {
+    clearTimeout(settled);
+    settled = setTimeout(() => { painter.compare(makeJob(view, show)); redraw(); }, SETTLED);
+  };
+  addEventListener('resize', () => { measure(); redraw(); compareSoon(); });
   addEventListener('hashchange', () => follow(readLink(location.hash)));
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { panel.update(show); redraw(); });
-  paint();
+  compareSoon();
+  paint(true);  // the first frame at once: workers are not there yet
 
   return {
-    head, painter: () => painter.name,
+    head, painter: () => painter.name, painters: painter.names, use: painter.use, compared: painter.compared,
     state: () => ({ ...view, ...show, exact: exact && exact.distance, segments, hover }),
-    set({ cx = view.cx, cy = view.cy, zoom = view.scale / view.whole, ...shown }) {
+    async set({ cx = view.cx, cy = view.cy, zoom = view.scale / view.whole, ...shown }) {
       lookAt(view, cx, cy, zoom);
       Object.assign(show, shown);
       setLevel(show.level);
-      paint();
+      await paint();
       return { cx: view.cx, cy: view.cy, scale: view.scale, width: view.width, height: view.height, down: view.down };
     },
-    values(pixels) {
-      const found = painter.values(makeJob(view, show));
+    values(pixels, name) {
+      const found = painter.values(makeJob(view, show), name);
       return pixels.map(([x, y]) => found[y * view.width + x]);
     },
-    uncovered() {
-      const found = painter.values(makeJob(view, show)), [xmin, ymin, xmax, ymax] = view.box;
+    uncovered(name) {
+      const found = painter.values(makeJob(view, show), name), [xmin, ymin, xmax, ymax] = view.box;
       let count = 0;
       for (let y = 0, z = 0; y < view.height; y++) for (let x = 0; x < view.width; x++, z++) {
         const [wx, wy] = worldAt(view, x + 0.5, y + 0.5), margin = 1 / view.scale;
@@ -206,12 +217,12 @@ export function startPage({ head, arrays }, tree, makePainter) {
     answers: points => points.map(([x, y]) => answersAt(tree, x, y)),
     pixelOf: (x, y) => pixelOf(view, x, y),
     /** Milliseconds of `count` frames, the view moved by a pixel between them. */
-    times(count) {
+    async times(count) {
       const found = [];
       for (let i = 0; i < count; i++) {
         const start = performance.now();
         view.cx += (i % 2 ? 1 : -1) / view.scale;
-        paint();
+        await paint();
         found.push(performance.now() - start);
       }
       return found;

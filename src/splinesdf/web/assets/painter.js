@@ -32,6 +32,7 @@ export function canvasPainter(canvas, tree) {
       paintRows(tree, job, new Uint32Array(image.data.buffer), 0, job.height);
       pen.putImageData(image, 0, 0);
     },
+    stop() {},
     /** The spline at pixels' centers, by the very loop that paints; NaN where nothing is painted. */
     values(job) {
       const values = new Float64Array(job.width * job.height).fill(NaN);

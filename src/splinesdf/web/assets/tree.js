@@ -7,7 +7,7 @@ export function makeTree(head, arrays) {
   const { lines_x: xs, lines_y: ys, split, ordinates } = arrays;
   const m = xs.length - 1, n = ys.length - 1, count = head.nodes, cells = head.cells;
   const tree = {
-    xs, ys, m, n, cells, depth: 0,
+    xs, ys, m, n, cells, depth: 0, uniform: head.uniform,
     child: new Int32Array(count).fill(-1), cellOf: new Int32Array(count).fill(-1),
     level: new Uint8Array(count), column: new Int32Array(count), row: new Int32Array(count),
     power: new Float64Array(8 * cells),
