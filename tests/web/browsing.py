@@ -17,18 +17,25 @@ addEventListener('securitypolicyviolation',
 """
 
 
-_COLORS = """() => {
+# The words of the picture that is shown.
+_PICTURE = """
   const gl = document.getElementById('gl'), c = document.createElement('canvas');
   const shown = gl.hidden ? document.getElementById('picture') : gl;
   c.width = shown.width;
   c.height = shown.height;
   const pen = c.getContext('2d', { willReadFrequently: true });
   pen.drawImage(shown, 0, 0);
-  const d = pen.getImageData(0, 0, c.width, c.height).data;
+  const d = pen.getImageData(0, 0, c.width, c.height).data;"""
+_COLORS = f"""() => {{ {_PICTURE}
   let s = '';
   for (let i = 0; i < d.length; i += 8192) s += String.fromCharCode(...d.subarray(i, i + 8192));
   return [btoa(s), c.width, c.height];
-}"""
+}}"""
+_DIGEST = f"""() => {{ {_PICTURE}
+  let hash = 2166136261;
+  for (const word of new Uint32Array(d.buffer)) hash = Math.imul(hash ^ word, 16777619) >>> 0;
+  return hash;
+}}"""
 
 
 @dataclass
@@ -64,6 +71,10 @@ class Shown:
         text, width, height = self.tab.evaluate(_COLORS)
         found = np.frombuffer(base64.b64decode(text), dtype=np.uint8)
         return found.reshape(height, width, 4)[..., :3]
+
+    def digest(self) -> int:
+        """A number that another picture does not have, but by chance."""
+        return int(self.tab.evaluate(_DIGEST))
 
     def until(self, condition: str) -> None:
         """Wait for an expression of JavaScript to become true.

@@ -41,7 +41,7 @@ def test_values_at_pixels_are_the_splines(
     largest = max(map(abs, spline.domain))
     generator = np.random.default_rng(7)
     for place, (x, y) in places(spline).items():
-        for zoom in _ZOOMS:
+        for zoom in _ZOOMS if place != "corner" else (1e3,):
             view = page.set(cx=x, cy=y, zoom=zoom)
             size = int(view["width"]), int(view["height"])
             pixels = generator.integers(0, size, size=(_PIXELS, 2))

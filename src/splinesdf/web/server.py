@@ -12,6 +12,7 @@ import json
 import secrets
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -145,6 +146,11 @@ def _handler(answer: Callable[[str], Answer]) -> type[BaseHTTPRequestHandler]:
                 status, kind, body = _refused(403, "expected a request to 127.0.0.1, got another")
             else:
                 status, kind, body = answer(self.path)
+            # The browser gives a question up if the mouse has moved on: nobody waits then.
+            with suppress(ConnectionError):
+                self._send(status, kind, body)
+
+        def _send(self, status: int, kind: str, body: bytes) -> None:
             self.send_response(status)
             for name, value in (
                 ("Content-Type", kind),

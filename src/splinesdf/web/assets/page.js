@@ -204,13 +204,16 @@ export function startPage(content, tree) {
       const found = painter.values(makeJob(view, show), name);
       return pixels.map(([x, y]) => found[y * view.width + x]);
     },
+    /** Pixels of the domain that nothing was painted on. */
     uncovered(name) {
       const found = painter.values(makeJob(view, show), name), [xmin, ymin, xmax, ymax] = view.box;
+      // Not those on its border: there rounding decides.
+      const [x0, ya] = pixelOf(view, xmin, ymin), [x1, yb] = pixelOf(view, xmax, ymax);
+      const y0 = Math.min(ya, yb), y1 = Math.max(ya, yb);
       let count = 0;
       for (let y = 0, z = 0; y < view.height; y++) for (let x = 0; x < view.width; x++, z++) {
-        const [wx, wy] = worldAt(view, x + 0.5, y + 0.5), margin = 1 / view.scale;
-        const within = wx > xmin + margin && wx < xmax - margin && wy > ymin + margin && wy < ymax - margin;
-        if (within && Number.isNaN(found[z])) count++;
+        const within = x > x0 + 0.5 && x < x1 - 1.5 && y > y0 + 0.5 && y < y1 - 1.5;
+        if (within && found[z] !== found[z]) count++;
       }
       return count;
     },
