@@ -23,6 +23,7 @@ from splinesdf.cli.offset import offset
 from splinesdf.cli.paper import paper
 from splinesdf.cli.query import query
 from splinesdf.cli.texture import texture
+from splinesdf.cli.view import view
 
 
 def main() -> None:
@@ -60,10 +61,10 @@ def _fail(message: str) -> None:
 def commands() -> None:
     """Closed curves to a compact, smooth signed distance function, and to trimmed offsets.
 
-    SHAPE is a file (.svg, .json formulas, .csv or .dat points) or the name of a shape that comes
+    SHAPE is a file (.svg, .dxf, .ttf, .geojson, .csv, ...) or the name of a shape that comes
     with the package: part, gamma1, gamma2, gamma3.
     """
 
 
-for _command in (fit, offset, query, texture, atlas, paper, info, demo):
+for _command in (fit, offset, query, texture, atlas, view, paper, info, demo):
     commands.add_command(_command)

@@ -14,7 +14,8 @@ from splinesdf.spaces.space import SPACES
 _OPERATORS = tuple(dict.fromkeys(name for one in ELEMENTS.values() for name in one.operators))
 
 
-def _this_version() -> str:
+def this_version() -> str:
+    """The version of splinesdf that runs, as its installation says."""
     from importlib import metadata  # not above: loading a fit does not need it
 
     try:
@@ -63,7 +64,7 @@ class Provenance:
     operator: str
     stopped: str
     evaluations: int
-    version: str = field(default_factory=_this_version)
+    version: str = field(default_factory=this_version)
 
     def __post_init__(self) -> None:
         # As plain Python values, so that they are written and compared as what they are.
