@@ -30,6 +30,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     ),
     "texture": ("é€.csv", "-o", "é.png", "--range", "0.1234567"),
     "atlas": ("drawings é", "-o", "é.png", "--size", "12.345678"),
+    "view": ("é€.csv", "--html", "é.html", "--tolerance", "0.05"),
     "paper": ("--tables",),
     "demo": (
         "-o",
