@@ -157,6 +157,9 @@ def test_strokes_are_what_a_renderer_paints(tmp_path: Path, inner: str) -> None:
          (25, 0, 45, 20)),
         ("<rect transform='scale(.5)' transform-origin='bottom right' width='40' height='40'/>",
          (50, 50, 70, 70)),
+        # A map whose determinant is beyond the largest float.
+        ("<g transform='scale(1e80) scale(1e80)'><svg width='5e-159' height='5e-159'>"
+         "<rect width='9e-159' height='3e-159'/></svg></g>", (0, 0, 50, 30)),
         # CSS drops what is no declaration, and SVG what has no area, and en-US is English:
         # resvg heeds none of these.
         ("<rect width='9' height='9' style='fill;foo:bar;fill:none'/>"
