@@ -19,6 +19,7 @@ from splinesdf.fits.request import Band, FitOptions, fit_options, request_of
 from splinesdf.fits.target import ShapeTarget
 from splinesdf.fits.trials import Trial
 from splinesdf.ground.arrays import Bools, Floats
+from splinesdf.ground.brief import brief, counted
 from splinesdf.meshes import Mesh
 from splinesdf.shapes.shape import Shape
 from splinesdf.splines.provenance import Provenance
@@ -65,6 +66,10 @@ class FitResult:
 
     spline: SplineSDF
     history: tuple[FitStep, ...]
+
+    def __repr__(self) -> str:
+        cells = counted(self.cells, "cell")
+        return brief("FitResult", self.spline.name, cells, self._made.errors)
 
     @property
     def _made(self) -> Provenance:
