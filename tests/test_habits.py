@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import copy
+import inspect
 import pickle
 from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.fits.fit import FitStep
+from splinesdf.fits.fit import FitStep, fit_steps
+from splinesdf.fits.request import request_of
+from splinesdf.fits.target import ShapeTarget
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.splines.provenance import Provenance
 
@@ -110,3 +114,37 @@ def test_a_pickled_shape_answers_as_before() -> None:
     other = pickle.loads(pickle.dumps(shape))
     assert (other.box, other.name, other.fill) == (box, "bar", "nonzero")
     assert np.array_equal(other.control, shape.control)
+
+
+@pytest.mark.parametrize(("name", "pieces"), [("part", 9), ("gamma1", 1), ("gamma3", 1)])
+def test_examples_need_no_file(
+    name: str, pieces: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shape = ss.example(name)
+    assert (shape.name, shape.loop_count) == (name, pieces)
+
+
+@pytest.mark.parametrize("name", ["gamma4", "", "part.svg", None, 3, ["part"]])
+def test_an_unknown_example_is_told_which_there_are(name: object) -> None:
+    with pytest.raises(ss.InputError, match="part, gamma1, gamma2, gamma3, got "):
+        ss.example(name)  # type: ignore[arg-type]
+
+
+def test_reading_the_name_of_an_example_says_how() -> None:
+    with pytest.raises(ss.InputError, match=r"splinesdf\.example\('part'\)"):
+        ss.read("part")
+
+
+def test_a_fit_needs_no_tolerance_and_takes_it_second() -> None:
+    assert request_of(ShapeTarget(bar()), None, {}).tolerance == pytest.approx(2e-3)  # of 2 by 1
+    for function in (ss.fit, fit_steps):
+        assert inspect.signature(function).bind(bar(), 0.1).arguments["tolerance"] == 0.1
+
+
+@pytest.mark.parametrize("given", ["part.svg", CORNERS, None])
+def test_a_fit_of_no_shape_says_what_makes_one(given: object) -> None:
+    with pytest.raises(
+        ss.InputError, match=r"expected a Shape, got \w+: read one by splinesdf.read"
+    ):
+        ss.fit(given, 0.1)  # type: ignore[arg-type]
