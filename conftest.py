@@ -1,7 +1,6 @@
-"""The README's Python blocks are tests, run in a temporary folder beside the part they read."""
+"""The README's Python blocks are tests, run in an empty temporary folder."""
 
 import os
-import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -9,13 +8,10 @@ from typing import Any
 from sybil import Sybil
 from sybil.parsers.markdown import PythonCodeBlockParser
 
-_PART = Path(__file__).parent / "src" / "splinesdf" / "data" / "part.svg"
-
 
 def _enter(namespace: dict[str, Any]) -> None:
     namespace["_came_from"] = Path.cwd()
     namespace["_folder"] = tempfile.TemporaryDirectory()
-    shutil.copy(_PART, namespace["_folder"].name)
     os.chdir(namespace["_folder"].name)
 
 

@@ -19,7 +19,7 @@ from splinesdf.errors import (
 from splinesdf.fits.fit import FitResult, fit
 from splinesdf.fits.interpolation import interpolate
 from splinesdf.ground.limits import Limits
-from splinesdf.io.input import read, read_all
+from splinesdf.io.input import example, read, read_all
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
 from splinesdf.meshes.lattice import DistanceGrid
@@ -53,6 +53,7 @@ __all__ = [
     "as_arcs",
     "atlas",
     "closest_point",
+    "example",
     "fit",
     "from_level_set",
     "interpolate",

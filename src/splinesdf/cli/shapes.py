@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import ExitStack
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -13,16 +11,14 @@ import click
 
 import splinesdf as ss
 from splinesdf.cli.report import working
+from splinesdf.fits.request import default_tolerance
 from splinesdf.ground.arrays import positive
 from splinesdf.ground.atomic import check_target
 from splinesdf.ground.limits import NAMES as LIMITS
+from splinesdf.io.examples import EXAMPLES
 from splinesdf.io.readers.source import IGNORED, STROKES
 from splinesdf.offsets.offset import offset_tolerance
 from splinesdf.splines.json_form import is_fit
-
-_BUILT_IN = {"part": "part.svg"} | {f"gamma{i}": f"gamma{i}.json" for i in (1, 2, 3)}
-# The tolerance, as a share of the shape's larger side, if none is given.
-_SHARE = 1e-3
 
 Command = Callable[..., None]
 
@@ -133,12 +129,8 @@ def tolerance_option(command: Command) -> Command:
 
 def read_shape(text: str, reading: Mapping[str, Any]) -> ss.Shape:
     """A shape from a file, or one that comes with the package; its notes go to stderr."""
-    with ExitStack() as stack:
-        path: Any = text
-        if text in _BUILT_IN and not Path(text).exists():
-            data = resources.files("splinesdf") / "data" / _BUILT_IN[text]
-            path = stack.enter_context(resources.as_file(data))
-        shape = ss.read(path, **reading)
+    kept = text in EXAMPLES and not Path(text).exists()
+    shape = ss.example(text, **reading) if kept else ss.read(text, **reading)
     for note in shape.notes:
         click.echo(f"note: {note}", err=True)
     return shape
@@ -168,7 +160,7 @@ def tolerance_of(shape: ss.Shape, tolerance: float | None) -> float:
     """The tolerance, or the default, which is then told."""
     if tolerance is not None:
         return positive(tolerance, "tolerance")
-    tolerance = _SHARE * shape.size
+    tolerance = default_tolerance(shape.box)
     click.echo(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given", err=True)
     return tolerance
 

@@ -18,6 +18,7 @@ from splinesdf.ground.arrays import (
     largest_coordinate,
     positive,
 )
+from splinesdf.ground.brief import brief, counted
 
 # A halving divides the sag of an arc by four, or by nearly two next to a cusp: so many are far more
 # than any tolerance above rounding takes. More change nothing; fewer would leave an arc coarse.
@@ -112,6 +113,13 @@ class Contour:
             raise InputError("expected each arc to start exactly where the last one ended")
         if self.closed and not (self.arcs[-1, 2] == self.arcs[0, 0]).all():
             raise InputError("expected a closed contour to end exactly where it starts")
+
+    def __repr__(self) -> str:
+        closed = "closed" if self.closed else "open"
+        inner = "" if self.parent is None else "in another"
+        return brief(
+            "Contour", "", f"at {self.distance:g}", counted(len(self.arcs), "arc"), closed, inner
+        )
 
     def __getstate__(self) -> tuple[dict[str, Any], tuple[Contour, ...]]:
         """The state for pickle and copy: the parent last of a few ancestors, the outermost first.

@@ -18,6 +18,7 @@ from splinesdf.arclets.tables import NOTHING, Arclets, Cells, Feet, Searched
 from splinesdf.arclets.thresholds import CORNER
 from splinesdf.ground.arrays import Floats, Ints, as_points, positive
 from splinesdf.ground.blocks import in_blocks, processors
+from splinesdf.ground.brief import brief, counted
 from splinesdf.meshes.lattice import DistanceGrid, node_count
 from splinesdf.meshes.mesh import Box, check_domain
 from splinesdf.shapes.shape import Shape
@@ -69,6 +70,9 @@ class Projection(NamedTuple):
     piece: Ints
     parameter: Floats
     curvature: Floats
+
+    def __repr__(self) -> str:
+        return brief("Projection", "", counted(int(np.size(self.distance)), "point"))
 
 
 def signed_distance(

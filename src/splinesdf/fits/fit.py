@@ -13,12 +13,13 @@ from typing import Literal, Unpack, cast
 
 import numpy as np
 
-from splinesdf.errors import ToleranceNotReached
+from splinesdf.errors import InputError, ToleranceNotReached
 from splinesdf.fits.certificate import Wanted, cell_errors, largest_error
 from splinesdf.fits.request import Band, FitOptions, fit_options, request_of
 from splinesdf.fits.target import ShapeTarget
 from splinesdf.fits.trials import Trial
 from splinesdf.ground.arrays import Bools, Floats
+from splinesdf.ground.brief import brief, counted
 from splinesdf.meshes import Mesh
 from splinesdf.shapes.shape import Shape
 from splinesdf.splines.provenance import Provenance
@@ -65,6 +66,10 @@ class FitResult:
 
     spline: SplineSDF
     history: tuple[FitStep, ...]
+
+    def __repr__(self) -> str:
+        cells = counted(self.cells, "cell")
+        return brief("FitResult", self.spline.name, cells, self._made.errors)
 
     @property
     def _made(self) -> Provenance:
@@ -128,14 +133,15 @@ class FitResult:
 
 
 @fit_options
-def fit(shape: Shape, *, tolerance: float, **options: Unpack[FitOptions]) -> FitResult:
+def fit(shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptions]) -> FitResult:
     """Approximate the signed distance of a shape to a tolerance.
 
     Parameters
     ----------
     shape : Shape
-    tolerance : float
-        Largest |s - u| allowed, in the shape's unit.
+    tolerance : float, optional
+        Largest |s - u| allowed, in the shape's unit: 1e-3 of the larger side of its box unless
+        given. The result says in ``.tolerance`` what it was.
 
     Other Parameters
     ----------------
@@ -177,7 +183,7 @@ def fit(shape: Shape, *, tolerance: float, **options: Unpack[FitOptions]) -> Fit
     ----------
     [Wang2014] Algorithm 2, with the true error in place of the error at cell centers.
     """
-    *_, result = fit_steps(shape, tolerance=tolerance, **options)
+    *_, result = fit_steps(shape, tolerance, **options)
     return require_reached(result)
 
 
@@ -200,9 +206,14 @@ def require_reached(result: FitResult) -> FitResult:
 
 @fit_options
 def fit_steps(
-    shape: Shape, *, tolerance: float, **options: Unpack[FitOptions]
+    shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptions]
 ) -> Iterator[FitResult]:
     """The loop of `fit`, one result a round; the last one says why it ended and raises nothing."""
+    if not isinstance(shape, Shape):
+        raise InputError(
+            f"expected a Shape, got {type(shape).__name__}: read one by splinesdf.read, or make it "
+            "by Shape.from_points"
+        )
     target = ShapeTarget(shape)
     asked = request_of(target, tolerance, options)
     tolerance, bands, certify = asked.tolerance, asked.bands, asked.certify

@@ -22,6 +22,9 @@ Band = tuple[float, float]
 # Cells along the domain's longer side at the start. More: cells wasted where the distance is
 # smooth; fewer: more rounds for nothing, each a halving.
 _START = 4
+# The tolerance, as a share of the larger side of the shape's box, if none is given. Larger: ridges
+# and corners look blunt in a picture; smaller: cells that nobody asked for.
+_SHARE = 1e-3
 # A million cells are 64 MB of ordinates and minutes of work: beyond it something is wrong.
 _MAX_CELLS = 1_000_000
 # Rounding of the distance, in units of the largest coordinate, with what the proof adds for it: no
@@ -69,7 +72,13 @@ class Request(NamedTuple):
     certify: bool
 
 
-def request_of(target: Target, tolerance: float, options: FitOptions) -> Request:
+def default_tolerance(box: Box) -> float:
+    """The tolerance of a fit of what has this box, if none is given."""
+    xmin, ymin, xmax, ymax = box
+    return _SHARE * max(xmax - xmin, ymax - ymin)
+
+
+def request_of(target: Target, tolerance: float | None, options: FitOptions) -> Request:
     """The request that options make, or an `InputError`."""
     check_known("fit", options, FitOptions)
     asked: FitOptions = {**DEFAULTS, **options}
@@ -81,6 +90,7 @@ def request_of(target: Target, tolerance: float, options: FitOptions) -> Request
     outward = float(max(bands.max(initial=0.0), 0.0))
     box = target.domain(outward) if domain is None else check_domain(domain)
     largest = max(abs(value) for value in (*target.box, *box))
+    tolerance = default_tolerance(target.box) if tolerance is None else tolerance
     tolerance = positive(tolerance, "tolerance")
     max_cells = whole(asked["max_cells"], "max_cells", least=1, most=2**63 - 1)
     min_side = finite(asked["min_side"], "min_side")

@@ -14,6 +14,7 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.limits import Limits, checked_limits, too_much, using
 from splinesdf.ground.paths import as_path, shortened
+from splinesdf.io.examples import EXAMPLES, example_file
 from splinesdf.io.readers import READERS, USED
 from splinesdf.io.readers.points import read_blocks
 from splinesdf.io.readers.reading import Reading, united
@@ -102,6 +103,34 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
 
 
 @read_options
+def example(name: str, **options: Unpack[ReadOptions]) -> Shape:
+    """Read a shape that comes with the package.
+
+    Parameters
+    ----------
+    name : {"part", "gamma1", "gamma2", "gamma3"}
+        A flange bracket, 114 by 72 mm; the three curves of [Wang2014].
+
+    Other Parameters
+    ----------------
+    fill, close, stroke, ignore, layers, ids, stroke_color, gap, columns, text, size, location
+        As of `read`.
+
+    Raises
+    ------
+    InputError
+        If there is no such example: the message lists them.
+
+    Examples
+    --------
+    >>> splinesdf.example("gamma2")
+    <Shape gamma2: 1 loop, 96 pieces, nonzero>
+    """
+    with example_file(name) as file:
+        return read(file, **options)
+
+
+@read_options
 def read_all(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> list[Shape]:
     """Read the elements of a file, one shape each; together they fill what `read` reads.
 
@@ -153,8 +182,10 @@ def _parts(path: str | os.PathLike[str], options: ReadOptions) -> Iterator[Readi
     with using(asked.limits), named(path) as file:
         suffix = file.suffix.lower()
         if suffix not in READERS:
+            kept = f"; or splinesdf.example({file.name!r})" if file.name in EXAMPLES else ""
             raise InputError(
-                f"expected a file ending in {', '.join(sorted(READERS))}, got {suffix or 'none'!r}"
+                f"expected a file ending in {', '.join(sorted(READERS))}, got "
+                f"{suffix or 'none'!r}{kept}"
             )
         check_used(asked, USED, suffix)
         content = content_of(file, asked.limits.bytes)

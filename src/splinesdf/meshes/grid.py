@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, shown
+from splinesdf.ground.brief import brief, without_caches
 from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 
+@without_caches
 @dataclass(frozen=True, eq=False)
 class Grid:
     """A rectangular grid of m x n cells.
@@ -52,6 +54,9 @@ class Grid:
             if not (increasing and np.isfinite(values).all()):
                 raise InputError(f"expected increasing grid lines {name}, got {shown(values)}")
         return cls(*lines)
+
+    def __repr__(self) -> str:
+        return brief("Grid", "", "{} x {} cells".format(*self.shape))
 
     kind: ClassVar = "grid"
     description: ClassVar = "grid"

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, whole
+from splinesdf.ground.brief import brief
 
 # Nodes along a side of a grid. More: squared they have no place in any memory, and their count none
 # in an index; fewer: a long strip could not be asked for.
@@ -25,6 +26,9 @@ class DistanceGrid(NamedTuple):
     x: Floats
     y: Floats
     distance: Floats
+
+    def __repr__(self) -> str:
+        return brief("DistanceGrid", "", f"{len(self.x)} x {len(self.y)} nodes")
 
 
 def node_count(count: int, name: str) -> int:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.ground.brief import brief, counted, without_caches
 from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 # Lattice coordinates of the finest level, times a few roots, must stay far inside 63 bits when two
@@ -20,6 +21,7 @@ DEEPEST = 26
 _LATTICE = 2**30
 
 
+@without_caches
 @dataclass(frozen=True, eq=False)
 class Quadtree:
     """Nodes of all levels, level after level; the leaves are the cells.
@@ -97,6 +99,9 @@ class Quadtree:
                 f"{m} x {n} cells of {tree.domain}"
             )
         return result
+
+    def __repr__(self) -> str:
+        return brief("Quadtree", "", counted(self.cell_count, "cell"), self.description)
 
     kind: ClassVar = "quadtree"
 

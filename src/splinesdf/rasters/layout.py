@@ -20,6 +20,7 @@ from typing import Any, Literal, NamedTuple
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, shown
 from splinesdf.ground.atomic import atomic_file
+from splinesdf.ground.brief import brief, counted
 from splinesdf.ground.paths import as_path
 from splinesdf.io.readers.fonts_glyphs import Kern, Lines
 from splinesdf.rasters.images import Codes, checked_format, coded, write_image
@@ -99,6 +100,11 @@ class Atlas:
     kerning: tuple[Kern, ...] = ()
     name: str = ""
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        height, width = self.values.shape
+        glyphs = counted(len(self.glyphs), "glyph" if self.characters else "drawing")
+        return brief("Atlas", self.name, glyphs, f"{width} x {height} texels")
 
     def pixels(self, bits: int = 8) -> Codes:
         """The distances as whole numbers, as `Texture.pixels`."""

@@ -17,6 +17,7 @@ from splinesdf.distance.exact import signed_distance_grid
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, positive, shown, whole
 from splinesdf.ground.atomic import atomic_file
+from splinesdf.ground.brief import brief
 from splinesdf.meshes.mesh import Box, check_domain
 from splinesdf.rasters.images import MOST_TEXELS, Codes, checked_format, coded, write_image
 from splinesdf.shapes.shape import Shape
@@ -62,6 +63,10 @@ class Texture:
     unit: float | None = None
     name: str = ""
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        ny, nx = self.values.shape
+        return brief("Texture", self.name, f"{nx} x {ny} texels", f"range {self.range:.4g}")
 
     @property
     def texel(self) -> tuple[float, float]:

@@ -20,6 +20,7 @@ from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.contours.contour import Contour
 from splinesdf.ground.arrays import Floats, Ints, Page, as_page, as_points, finite, positive, whole
+from splinesdf.ground.brief import brief, counted, without_caches
 from splinesdf.ground.limits import Limits, checked_limits, limits_in_use, using
 from splinesdf.shapes.boundary import kept_loops, some_boundary
 from splinesdf.shapes.loops import Fill, fill_rule
@@ -38,6 +39,7 @@ _MARGIN = 0.1
 _MOST_SAMPLES = 1_000_000
 
 
+@without_caches
 @dataclass(frozen=True, eq=False)
 class Shape:
     """A region of the plane bounded by closed loops of polynomial pieces.
@@ -88,6 +90,10 @@ class Shape:
         if self.unit is not None:
             object.__setattr__(self, "unit", positive(self.unit, "unit"))
 
+    def __repr__(self) -> str:
+        loops, pieces = counted(self.loop_count, "loop"), counted(self.piece_count, "piece")
+        return brief("Shape", self.name, loops, pieces, self.fill)
+
     @classmethod
     def from_pieces(
         cls,
@@ -116,10 +122,8 @@ class Shape:
             Count a contour that is drawn several times once, wherever it starts, is cut, or
             leads, and say so in the notes. Under either rule a hole would vanish that is drawn
             twice. True unless ``fill`` is given, which then decides.
-        unit : float, optional
-            Millimeters that one unit of the coordinates is.
-        page : (xmin, ymin, xmax, ymax), optional
-            The page of a drawing.
+        unit, page : optional
+            As the attributes.
 
         Raises
         ------
@@ -170,8 +174,7 @@ class Shape:
         t : pair of float or str
             The parameter's range; formulas without ``t`` are allowed.
         """
-        curve = parse_curve(x, y, t)
-        return cls.from_pieces([compile_curve(curve)], fill=fill, name=name)
+        return cls.from_pieces([compile_curve(parse_curve(x, y, t))], fill=fill, name=name)
 
     @classmethod
     def from_formulas(
@@ -200,8 +203,7 @@ class Shape:
         InputError
             If a formula cannot be used; the message names the section.
         """
-        loop = compile_sections(sections)
-        return cls.from_pieces([loop], fill=fill, close=close, name=name)
+        return cls.from_pieces([compile_sections(sections)], fill=fill, close=close, name=name)
 
     @classmethod
     def from_nurbs(
@@ -264,8 +266,7 @@ class Shape:
         points : array_like, shape (n, 2), or several of these
             In order; the last is joined to the first. Repeated neighbours are dropped.
         """
-        loops = point_loops(points, smooth=smooth)
-        return cls.from_pieces(loops, fill=fill, name=name)
+        return cls.from_pieces(point_loops(points, smooth=smooth), fill=fill, name=name)
 
     @classmethod
     def from_contours(cls, contours: Iterable[Contour], *, name: str = "") -> Shape:

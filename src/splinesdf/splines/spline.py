@@ -16,6 +16,7 @@ from splinesdf.contours.nesting import nested
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, as_points
 from splinesdf.ground.blocks import in_blocks, processors
+from splinesdf.ground.brief import brief, counted, without_caches
 from splinesdf.meshes import Box, Grid, Mesh
 from splinesdf.meshes.lattice import DistanceGrid, node_count
 from splinesdf.meshes.mesh import check_domain, frames
@@ -49,6 +50,7 @@ _NODES = 8
 Outside = Literal["extend", "nan"]
 
 
+@without_caches
 @dataclass(frozen=True, eq=False)
 class SplineSDF:
     """A C¹ quadratic spline on a criss-cross mesh, read as a signed distance.
@@ -109,6 +111,11 @@ class SplineSDF:
             )
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "y_down", y_down)
+
+    def __repr__(self) -> str:
+        cells = counted(len(self.ordinates), "cell")
+        errors = "" if self.made is None else self.made.errors
+        return brief("SplineSDF", self.name, cells, self.mesh.description, errors)
 
     @property
     def domain(self) -> Box:

@@ -20,6 +20,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints
+from splinesdf.ground.brief import brief, counted
 from splinesdf.meshes import Mesh
 from splinesdf.meshes.mesh import SQUARABLE
 from splinesdf.spaces.element import Element
@@ -53,6 +54,13 @@ class Triangles:
     points: Floats
     triangles: Ints
     values: Floats
+
+    def __repr__(self) -> str:
+        triangles, nodes = (
+            counted(len(self.triangles), "triangle"),
+            counted(len(self.points), "node"),
+        )
+        return brief("Triangles", "", triangles, nodes)
 
 
 class _Vertices(NamedTuple):
