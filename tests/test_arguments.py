@@ -114,10 +114,7 @@ GOOD: dict[str, Any] = {
     "count": 5,
     "index": 1,
     "degree": 3,
-    "m": 3,
-    "n": 4,
-    "i": 1,
-    "j": 1,
+    **{"m": 3, "n": 4, "i": 1, "j": 1},
     "operator": "V",
     "function": lambda points: points[:, 0],
     "loops": [[np.array(pair) for pair in zip(CORNERS, np.roll(CORNERS, -1, 0), strict=True)]],
@@ -133,6 +130,7 @@ GOOD: dict[str, Any] = {
 # Good values that differ from one function to another.
 GOOD_IN: dict[tuple[str, str], Any] = {
     ("Milling", "start"): (0.0, 1.0),
+    ("example", "name"): "part",
     ("Grid.from_lines", "x"): np.array([0.0, 1.0, 2.0]),
     ("Grid.from_lines", "y"): np.array([0.0, 1.0, 2.0]),
     ("Grid", "x"): np.array([0.0, 1.0, 2.0]),
