@@ -96,3 +96,15 @@ def test_contours_of_several_units_are_refused(part: ss.Shape, tmp_path: Path) -
     contours = [ss.offset(shape, 1.0, tolerance=1e-3)[0] for shape in (part, other)]
     with pytest.raises(ss.InputError, match="contours of one unit"):
         ss.write(tmp_path / "a.dxf", contours)
+
+
+@pytest.mark.parametrize("mm", [1.0 - 2e-16, 1.0 + 2e-9, 25.4 * (1.0 - 3e-9)])
+def test_dxf_says_a_unit_that_is_one_but_for_printed_digits(mm: float, tmp_path: Path) -> None:
+    (tmp_path / "part.svg").write_text(
+        DRAWING.format(width=f"{378 * mm!r}mm", height=f"{189 * mm!r}mm")
+    )
+    shape = ss.read(tmp_path / "part.svg")
+    contours = ss.offset(shape, 0.0)
+    ss.write(tmp_path / "a.dxf", contours)
+    assert ss.read(tmp_path / "a.dxf").unit == pytest.approx(round(mm, 1), rel=1e-15)
+    measure_file(tmp_path / "a.dxf", shape, [0.0], 1e-3, Told(), contours)  # which asks for a unit

@@ -193,3 +193,35 @@ def test_icons_of_strokes_are_as_painted(path: Path) -> None:
 @pytest.mark.parametrize("name", ["feather/frown", "tabler-outline/laurel-wreath-1"])
 def test_handles_of_no_length_are_followed_to_their_ends(name: str) -> None:
     assert judged(DATA / "drawings" / f"{name}.svg", 256, stroke="outline") == ""
+
+
+@pytest.mark.parametrize("path", ["M0 0H50V2", "M0 0H50L49 2", "M0 0H50L30 1", "M50 2V0H0V3"])
+@pytest.mark.parametrize("join", ["miter", "bevel", "round"])
+@pytest.mark.parametrize("cap", ["butt", "round"])
+def test_a_short_last_piece_shows_no_more_than_its_join_and_cap(
+    path: str, join: str, cap: str
+) -> None:
+    pen = Pen(12.0, cap, join, 1.0 if join == "miter" else 4.0)
+    shape = stroked(path, pen)
+    corners = np.array([piece[0] for piece in parse_path(path)[0]] + [parse_path(path)[0][-1][-1]])
+    points = grid(shape, 80)
+    inside = np.zeros(len(points), dtype=bool)
+    units = [step / math.hypot(*step) for step in np.diff(corners, axis=0)]
+    for start, end, unit in zip(corners[:-1], corners[1:], units, strict=True):
+        along = (points - start) @ unit
+        across = np.abs((points - start) @ np.array([-unit[1], unit[0]]))
+        inside |= (along >= 0) & (along <= math.dist(start, end)) & (across <= 6.0)
+    # A sector: what is ahead of the piece before and behind the one after, or a triangle of it.
+    for at, before, after in zip(corners[1:-1], units[:-1], units[1:], strict=True):
+        from_corner = points - at
+        beyond = (from_corner @ before >= 0) & (from_corner @ after <= 0)
+        chord = (before - after) / math.hypot(*(before - after))
+        reach = 6.0 * math.cos(0.5 * math.acos(float(before @ after)))
+        near = np.hypot(*from_corner.T) <= 6.0 if join == "round" else from_corner @ chord <= reach
+        inside |= beyond & near
+    for at, outward in ((corners[0], -units[0]), (corners[-1], units[-1])):
+        if cap == "round":
+            inside |= ((points - at) @ outward >= 0) & (np.hypot(*(points - at).T) <= 6.0)
+    distance = ss.signed_distance(shape, points)
+    away = np.abs(distance) > 1e-9
+    assert np.array_equal((distance < 0.0)[away], inside[away])

@@ -12,7 +12,7 @@ import logging
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ import numpy as np
 from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.limits import check_limit
+from splinesdf.io.readers.dxf_blocks import Seen, seen_entities
 from splinesdf.io.readers.dxf_edges import EDGES, Flat, is_tilted
 from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source, printable
@@ -118,8 +119,6 @@ def _document(source: Source) -> tuple[Any, Any]:
 
 def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[_Edge]:
     """The edges of the model space, blocks resolved."""
-    from ezdxf import disassemble
-
     layers = None if options.layers is None else {name.lower() for name in options.layers}
     if layers is not None:
         known = {layer.dxf.name.lower() for layer in document.layers}
@@ -129,21 +128,22 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
             raise InputError(f"expected layers of {names[:200]}, got {min(missing)!r:.60}")
     if "clip-path" not in options.ignore:
         _check_clips(document)
-    hidden = {
-        layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()
-    }
+    frozen = _names(layer for layer in document.layers if layer.is_frozen())
+    hidden = frozen | _names(layer for layer in document.layers if layer.is_off())
     _check_inserts(document)
     count = 0
-    for number, entity in enumerate(_resolved(disassemble, document)):
+    for number, seen in enumerate(_resolved(document, frozen)):
         _check_entities(number + 1)
-        kind, layer = entity.dxftype(), entity.dxf.get("layer", "0").lower()
-        if layers is not None and layer not in layers:
+        entity, kind = seen.entity, seen.entity.dxftype()
+        if layers is not None and seen.layer not in layers:
             left_out["entities on other layers"] += 1
-        elif layers is None and layer in hidden:
+        elif layers is None and (seen.layer in hidden or seen.frozen):
             left_out["entities on hidden layers"] += 1
+        elif entity.dxf.get("invisible", 0):
+            left_out[f"invisible {kind}"] += 1
         elif kind not in EDGES:
             left_out[kind] += 1
-        elif is_tilted(entity):
+        elif is_tilted(entity) or seen.is_tilted():
             left_out[f"tilted {kind}"] += 1
         else:
             try:
@@ -151,7 +151,7 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
                     count += len(pieces)
                     check_count(count)
                     if pieces:
-                        yield _Edge(kind, pieces)
+                        yield _Edge(kind, seen.mapped(pieces))
             except Flat as reason:
                 left_out[f"{kind} ({reason})"] += 1
 
@@ -205,9 +205,13 @@ def _check_clips(document: Any) -> None:
             )
 
 
-def _resolved(disassemble: Any, document: Any) -> Iterator[Any]:
+def _names(layers: Iterable[Any]) -> frozenset[str]:
+    return frozenset(layer.dxf.name.lower() for layer in layers)
+
+
+def _resolved(document: Any, frozen: frozenset[str]) -> Iterator[Seen]:
     try:
-        yield from disassemble.recursive_decompose(document.modelspace())
+        yield from seen_entities(document, frozen)
     except (RecursionError, ArithmeticError, AttributeError, ValueError, TypeError) as error:
         raise InputError(
             f"expected blocks that can be resolved, got damaged ones ({type(error).__name__})"

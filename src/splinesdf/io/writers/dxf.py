@@ -13,7 +13,7 @@ from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind, elements, unfolded
 from splinesdf.contours.contour import Contour, box
 from splinesdf.errors import MissingExtraError
-from splinesdf.io.writers.options import DXF_UNITS, MILLIMETERS, Options
+from splinesdf.io.writers.options import MILLIMETERS, Options, dxf_unit
 
 # Bits of a SPLINE's flags (group code 70).
 _CLOSED, _RATIONAL, _PLANAR = 1, 4, 8
@@ -47,7 +47,7 @@ def dxf_text(contours: Sequence[Contour], options: Options) -> str:
     document = new("R2010")
     # None if it is not known, as ezdxf's own default is meters.
     unit = options.unit if options.units is None else MILLIMETERS[options.units]
-    document.header["$INSUNITS"] = 0 if unit is None else DXF_UNITS.get(unit, 0)
+    document.header["$INSUNITS"] = dxf_unit(unit)
     document.header["$MEASUREMENT"] = 0 if options.units == "inch" else 1
     space = document.modelspace()
     layers = _layers({float(contour.distance) + 0.0 for contour in contours})

@@ -96,10 +96,16 @@ def factor(suffix: str, unit: float | None, units: str | None) -> float:
     """
     if unit is None or suffix not in Y_UP:
         return 1.0
-    if units is None and suffix == ".dxf" and unit in DXF_UNITS:
+    if units is None and suffix == ".dxf" and dxf_unit(unit):
         return 1.0
     found = unit / MILLIMETERS[units or "mm"]
     return 1.0 if abs(found - 1.0) <= _PRINTED else found
+
+
+def dxf_unit(unit: float | None) -> int:
+    """DXF's number for a unit of so many millimeters, but for printed digits; 0 if it has none."""
+    known = (n for mm, n in DXF_UNITS.items() if unit and abs(unit / mm - 1.0) <= _PRINTED)
+    return next(known, 0)
 
 
 def is_used(suffix: str, name: str) -> bool:

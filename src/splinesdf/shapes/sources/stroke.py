@@ -330,9 +330,9 @@ def _powers(values: Floats) -> Floats:
 def _join(at: Floats, before: Floats, after: Floats, half: float, pen: Pen) -> Loops:
     """What is added where a path turns, on the outer side."""
     turn = _turn(before, after)
-    if pen.join == "round":
-        return _disk(at, half)
     side = -math.copysign(half, turn)
+    if pen.join == "round":
+        return _fan(at, side * np.array([-before[1], before[0]]), turn)
     one = at + side * np.array([-before[1], before[0]])
     other = at + side * np.array([-after[1], after[0]])
     corners = [at, one, other]
@@ -346,11 +346,11 @@ def _join(at: Floats, before: Floats, after: Floats, half: float, pen: Pen) -> L
 
 
 def _cap(at: Floats, outward: Floats, half: float, pen: Pen) -> Loops:
+    normal = half * np.array([-outward[1], outward[0]])
     if pen.cap == "round":
-        return _disk(at, half)
+        return _fan(at, -normal, math.pi)
     if pen.cap != "square":
         return []
-    normal = half * np.array([-outward[1], outward[0]])
     far = at + half * outward
     return [_polygon([at - normal, far - normal, far + normal, at + normal])]
 
@@ -362,6 +362,16 @@ def _dot(at: Floats, along: Floats, pen: Pen) -> Loops:
         return _disk(at, half)
     ahead, left = half * along, half * np.array([-along[1], along[0]])
     return [_polygon([at - ahead - left, at + ahead - left, at + ahead + left, at - ahead + left])]
+
+
+def _fan(at: Floats, spoke: Floats, turn: float) -> Loops:
+    """A sector of a disk, from a spoke on.
+
+    No more of the disk: that would be seen beyond the butt end of a short piece.
+    """
+    arc = compile_arc(at, spoke, np.array([-spoke[1], spoke[0]]), 0.0, turn)
+    lines = [np.array([arc[-1][-1], at]), np.array([at, arc[0][0]])]
+    return region([[*arc, *lines]], "nonzero")
 
 
 def _disk(at: Floats, radius: float) -> Loops:
