@@ -304,7 +304,7 @@ def test_holes_are_cut_before_the_outline(run: Run, tmp_path: Path) -> None:
     )
     text = (tmp_path / "x.nc").read_text()
     starts = [
-        np.hypot(float(x) - 30.0, float(y) + 30.0) for x, y in re.findall(r"G0 X(\S+) Y(\S+)", text)
+        np.hypot(float(x) - 30.0, float(y) - 30.0) for x, y in re.findall(r"G0 X(\S+) Y(\S+)", text)
     ]
     radii = [radius for radius in starts if radius > 1.0]
     assert radii[:2] == pytest.approx([8.0 - 0.15, 25.0 + 0.15], abs=0.1)
