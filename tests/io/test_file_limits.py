@@ -61,7 +61,7 @@ POINTS = [(k, k * k % 97) for k in range(60)]
         ("a.svg", "<svg><clipPath id='a'><rect width='9' height='9'/></clipPath><path "
          "d='M0 0H1V1Z' clip-path='url(#a)'/></svg>", "pieces", 7),
         ("a.wkt", "POLYGON((0 0,1 0,0 1))", "bytes", 22),
-        ("a.svgz", gzip.compress(b"<svg><path d='M0 0H1V1Z'/></svg>"), "expanded", 32),
+        ("a.svgz", gzip.compress(b"<svg><path d='M0 0H1V1Z'/></svg>", mtime=0), "expanded", 32),
         ("a.svg", "<svg><path d='M0 0H1V1Z'/></svg>", "tags", 3),
         ("a.svg", "<svg><g a='' b='' c='' d=''><path d='M0 0H1V1Z'/></g></svg>", "tags", 5),
         ("a.wkt", "GEOMETRYCOLLECTION(" * 40 + "POLYGON((0 0,1 0,0 1))" + ")" * 40,
