@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,6 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.cli.main import main
 from splinesdf.ground.atomic import write_text
 from splinesdf.io.remeasured import measure_file
 from tests.chains import circle, circular
@@ -27,21 +25,6 @@ PLATE = (
     '<svg xmlns="http://www.w3.org/2000/svg"><path fill-rule="evenodd" '
     'd="M0 0H40V30H0Z M8 8V22H32V8Z M14 15a5 3 0 1 0 10 0a5 3 0 1 0 -10 0Z"/></svg>'
 )
-
-
-@pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run ``splinesdf offset`` with these arguments in a folder with a drawing."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "plate.svg").write_text(PLATE)
-
-    def command(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["splinesdf", "offset", *arguments])
-        with pytest.raises(SystemExit) as caught:
-            main()
-        return int(caught.value.code or 0), *capsys.readouterr()
-
-    return command
 
 
 @pytest.mark.parametrize("shape", ["gamma2", "plate.svg"])

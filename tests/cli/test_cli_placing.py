@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from splinesdf.cli.main import main
 from splinesdf.io import output as io_output
 from splinesdf.io.placing import Placement, placed
 from splinesdf.io.remeasured import curves_in
@@ -24,21 +22,6 @@ PLATE = (
     '<path fill-rule="evenodd" d="M20 10H100V70H20Z M36 26V54H84V26Z"/></svg>'
 )
 ASKED = ("plate.svg", "-d", "2", "-d", "-3", "--tolerance", "0.02")
-
-
-@pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run ``splinesdf offset`` with these arguments in a folder with a drawing."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "plate.svg").write_text(PLATE)
-
-    def command(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["splinesdf", "offset", *arguments])
-        with pytest.raises(SystemExit) as caught:
-            main()
-        return int(caught.value.code or 0), *capsys.readouterr()
-
-    return command
 
 
 def all_of(names: Sequence[str]) -> list[str]:

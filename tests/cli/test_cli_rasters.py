@@ -33,10 +33,11 @@ def test_texture_writes_what_the_library_makes(run: Command, tmp_path: Path) -> 
     assert turned.values.shape == (64, 32)
 
 
-def test_texture_of_a_saved_fit(run: Command, tmp_path: Path) -> None:  # noqa: F811
+@pytest.mark.parametrize("name", ["fit.npz", "fit.json"])
+def test_texture_of_a_saved_fit(run: Command, name: str, tmp_path: Path) -> None:  # noqa: F811
     spline = ss.fit(ss.read(GEAR), tolerance=0.1, band=(-0.5, 0.5)).spline
-    spline.save(tmp_path / "fit.npz")
-    done = run("texture", "fit.npz", "-o", "fit.tif", "--texels", "20", "--range", "2")
+    spline.save(tmp_path / name)
+    done = run("texture", name, "-o", "fit.tif", "--texels", "20", "--range", "2")
     assert done.status == 0, done.err
     assert "note: the spline keeps its tolerance at distances of -0.5 to 0.5 only" in done.err
     values = np.asarray(Image.open(tmp_path / "fit.tif"))

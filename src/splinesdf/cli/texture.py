@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
@@ -10,12 +9,12 @@ import click
 import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.report import working
-from splinesdf.cli.shapes import check_outputs, read_shape, reading_options
+from splinesdf.cli.shapes import check_outputs, holds_fit, read_shape, reading_options
 from splinesdf.rasters.images import checked_format
 
 
 @click.command()
-@click.argument("source", metavar="FIT.npz|SHAPE")
+@click.argument("source", metavar="FIT|SHAPE")
 @reading_options
 @click.option("-o", "--output", required=True, help=".png .tif .tiff .npy")
 @click.option("--texels", type=int, default=64, show_default=True, help="Of the larger side.")
@@ -51,8 +50,7 @@ def texture(
     TIFF and NPY: the distances, negative inside.
     """
     checked_format(output, bits)
-    fit = Path(source).suffix.lower() == ".npz"
-    shape = ss.load(source) if fit else read_shape(source, reading)
+    shape = ss.load(source) if holds_fit(source) else read_shape(source, reading)
     check_outputs(source, output)
     with working("computing distances (the first run compiles)"):
         found = ss.texture(shape, texels, range=width, domain=domain, rows=rows)
