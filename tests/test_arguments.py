@@ -25,7 +25,7 @@ from splinesdf.fits.fit import fit_steps
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.offsets.offset import deviation
 from splinesdf.splines import quasi
-from splinesdf.splines.spline import bspline
+from splinesdf.splines.quasi import bspline
 
 CORNERS = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
 UNIT = (0.0, 0.0, 1.0, 1.0)

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import nested
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, as_points
-from splinesdf.ground.blocks import in_blocks, processors
+from splinesdf.ground.arrays import Bools, Floats, as_floats, as_points
+from splinesdf.ground.blocks import in_blocks
 from splinesdf.ground.brief import brief, counted, without_caches
-from splinesdf.meshes import Box, Grid, Mesh
+from splinesdf.meshes import Box, Mesh
 from splinesdf.meshes.lattice import DistanceGrid, node_count
 from splinesdf.meshes.mesh import check_domain, frames
 from splinesdf.shapes.shape import Shape
@@ -25,7 +24,6 @@ from splinesdf.spaces.element import Element
 from splinesdf.spaces.quadratic import QUADRATIC
 from splinesdf.spaces.space import Space, space_on
 from splinesdf.spaces.tables import Evaluated
-from splinesdf.spaces.tensor import bspline_coefficients, tensor_ordinates
 from splinesdf.splines.archive import (
     Archive,
     archive_dict,
@@ -35,8 +33,10 @@ from splinesdf.splines.archive import (
 )
 from splinesdf.splines.border import border_of, extend_lattice
 from splinesdf.splines.finite_elements import skfem_basis
+from splinesdf.splines.lattice_values import values_on_lattice
 from splinesdf.splines.level_sets import contours
 from splinesdf.splines.provenance import Provenance
+from splinesdf.splines.shader import spline_shader
 from splinesdf.splines.tables import Border
 from splinesdf.splines.triangles import Triangles, quadratic_triangles
 
@@ -146,10 +146,6 @@ class SplineSDF:
             As of `splinesdf.signed_distance_grid`: ``distance[j, i]`` is the value at
             (x[i], y[j]), to rounding.
         """
-        from splinesdf.spaces.kernels.evaluation import (
-            evaluate_lattice,  # Numba loads only when used
-        )
-
         _check_outside(outside)
         box = self.domain if domain is None else check_domain(domain)
         x, y = (
@@ -160,17 +156,7 @@ class SplineSDF:
         if few or self.element.power_form is None:
             nodes = np.stack(np.meshgrid(x, y), axis=-1)
             return DistanceGrid(x, y, self(nodes, outside=outside))
-        columns, rows = self._nodes_of_cells(x, 0), self._nodes_of_cells(y, 1)
-        distance = np.full((len(y), len(x)), np.nan)
-
-        local_x, local_y = x - self.domain[0], y - self.domain[1]
-
-        def work(part: slice) -> None:
-            cells = self._frames[part], self._table[part], columns[part], rows[part]
-            evaluate_lattice(*cells, local_x, local_y, distance)
-
-        count = len(self.ordinates)
-        in_blocks(count, work, size=min(4096, math.ceil(count / (4 * processors()))))
+        distance = values_on_lattice(self.mesh, self._frames, self._table, (x, y))
         if outside == "extend":
             extend_lattice(self.domain, self._border, x, y, distance)
         return DistanceGrid(x, y, distance)
@@ -286,6 +272,25 @@ class SplineSDF:
         """
         return skfem_basis(self.triangles())
 
+    def to_glsl(self, name: str = "sdf") -> tuple[str, NDArray[np.float32]]:
+        """The spline as functions of GLSL, and the table of its numbers for a texture.
+
+        ``float sdf(vec2 p)`` and ``vec3 sdf_and_gradient(vec2 p)``, p in the shape's coordinates,
+        for GLSL 3.30 and GLSL ES 3.00 (WebGL 2) on. The table, float32 (rows, 2048, 4), goes as it
+        is into a texture of RGBA32F with nearest filtering, the uniform ``sdf_table``. Beyond the
+        domain: the value at its nearest point and the distance to that, which continues it, but
+        may be more than the distance.
+
+        Raises
+        ------
+        InputError
+            If the spline is cubic, GLSL does not take the name, a texture of 2048 x 2048 does not
+            hold the numbers, or the domain is so far from the origin that float32 does not tell
+            places in it apart.
+        """
+        self._check_quadratic("another for shaders")
+        return spline_shader(self.mesh, self._table, name, repr(self)[1:-1], self.y_down)
+
     def to_dict(self) -> dict[str, Any]:
         """All that a saved file holds, as texts, numbers, lists and dicts, for JSON.
 
@@ -364,15 +369,6 @@ class SplineSDF:
 
         extend(np.array(self.domain), self._border, evaluated)
 
-    def _nodes_of_cells(self, nodes: Floats, axis: int) -> Ints:
-        """The range of increasing nodes in each cell; the last cells have the border's too."""
-        boxes, corners = self.mesh.boxes, self.mesh.corners
-        first = np.searchsorted(nodes, boxes[:, axis], side="left")
-        end = np.searchsorted(nodes, boxes[:, axis + 2], side="left")
-        last = corners[:, axis + 2] == corners[:, axis + 2].max()
-        end[last] = np.searchsorted(nodes, self.domain[axis + 2], side="right")
-        return np.column_stack([first, end])
-
 
 def _check_outside(outside: str) -> None:
     if outside not in ("extend", "nan"):
@@ -382,15 +378,3 @@ def _check_outside(outside: str) -> None:
 def load(path: str | os.PathLike[str]) -> SplineSDF:
     """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one."""
     return SplineSDF(*read_archive(path))
-
-
-def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:
-    """The B-spline of cell (i, j) of a grid, -1 and m, n being the ring around the domain.
-
-    It is positive inside an octagon in the 3 x 3 cells around (i, j); all of them sum to one.
-
-    References
-    ----------
-    [Wang2014] Theorem 5 and the 41 values after it.
-    """
-    return SplineSDF(mesh, tensor_ordinates(mesh, bspline_coefficients(mesh, i, j)))
