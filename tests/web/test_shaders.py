@@ -87,7 +87,9 @@ def wavy(points: np.ndarray) -> np.ndarray:
 
 def tree() -> ss.SplineSDF:
     split = np.array([1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0] + 5 * [0, 0, 0, 0], dtype=bool)
-    return quasi_interpolate(wavy, Quadtree.from_splits((0.0, 0.0, 3.0, 2.0), (3, 2), split[:26]), "W")
+    return quasi_interpolate(
+        wavy, Quadtree.from_splits((0.0, 0.0, 3.0, 2.0), (3, 2), split[:26]), "W"
+    )
 
 
 @pytest.mark.parametrize("name", ["tree", "part", "thin", "grid", "equal"])

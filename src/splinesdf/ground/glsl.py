@@ -69,5 +69,9 @@ def number(value: float) -> str:
 
 
 def comment(text: str) -> str:
-    """A text that stays within its line: a backslash at its end would take the next one in."""
-    return "".join(c if c.isprintable() and c != "\\" else " " for c in text)
+    """A text for a comment of one line, in ASCII, as not all compilers take more.
+
+    A backslash at its end would take the next line in.
+    """
+    ascii_text = text.replace("≤", "<=").encode("ascii", "replace").decode()
+    return "".join(c if c.isprintable() and c != "\\" else " " for c in ascii_text)

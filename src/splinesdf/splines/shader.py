@@ -39,7 +39,7 @@ vec3 {name}_and_gradient(vec2 p) {{
     vec2 q = clamp(p, low, high), away = p - q;
 {locate}
     vec4 a = {name}_texel(2 * cell), b = {name}_texel(2 * cell + 1);
-    // a.x + a.y s + a.z t + a.w s² + b.x s t + b.y t² + b.z (s - t)₊² + b.w (s + t)₊²
+    // a.x + a.y s + a.z t + a.w s^2 + b.x s t + b.y t^2 + b.z right^2 + b.w left^2
     float right = max(st.x - st.y, 0.0), left = max(st.x + st.y, 0.0);
     float value = a.x + st.x * (a.y + a.w * st.x + b.x * st.y) + st.y * (a.z + b.y * st.y)
         + b.z * right * right + b.w * left * left;
