@@ -63,6 +63,15 @@ def as_arcs(contour: Contour, *, tolerance: float) -> Contour:
     References
     ----------
     [Bolton1975] Biarc curves, Computer-Aided Design 7 (2), 89-92: the biarc of equal legs.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> ellipse = ss.Shape.from_formula("2*cos(t)", "sin(t)")
+    >>> contour = ss.offset(ellipse, 0.5, tolerance=1e-3)[0]
+    >>> arcs = ss.as_arcs(contour, tolerance=1e-3)
+    >>> len(contour.arcs), len(arcs.arcs)  # doctest: +SKIP
+    (8, 24)
     """
     check_tolerance(tolerance, contour.arcs)
     grain = rounding(contour.arcs)

@@ -65,6 +65,18 @@ class Contour:
     page : (xmin, ymin, xmax, ymax), optional
         The page of the drawing that it is of, in the coordinates' unit. `write` mirrors y about
         its height.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> outer = ss.offset(square, 1)[0]
+    >>> outer
+    <Contour: at 1, 8 arcs, closed>
+    >>> round(outer.length, 6), round(outer.area, 6)  # 16 + 2 pi, 32 + pi
+    (22.283185, 35.141593)
+    >>> outer.points(tolerance=0.1).shape
+    (17, 2)
     """
 
     arcs: Floats

@@ -62,6 +62,15 @@ class FitResult:
         With the shape in ``.shape``, and what was asked and found in ``.made``.
     history : tuple of FitStep
         The rounds so far; the last one is this result's.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> result = ss.fit(ss.example("gamma1"), tolerance=0.01)
+    >>> result.error <= result.bound <= 0.01, result.stopped
+    (True, 'reached')
+    >>> float(result.spline((0.5, 0.5))) < 0.0
+    True
     """
 
     spline: SplineSDF
@@ -182,6 +191,14 @@ def fit(shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptio
     References
     ----------
     [Wang2014] Algorithm 2, with the true error in place of the error at cell centers.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> disk = ss.Shape.from_formula("cos(t)", "sin(t)")
+    >>> result = ss.fit(disk, tolerance=0.01, band=(-0.1, 0.1))
+    >>> abs(float(result.spline((1.05, 0.0))) - 0.05) <= result.bound <= 0.01
+    True
     """
     *_, result = fit_steps(shape, tolerance, **options)
     return require_reached(result)

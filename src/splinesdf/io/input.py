@@ -97,6 +97,16 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     InputError
         If the file is missing, cannot be read, is not what its extension says, or asks for more
         than a limit, which the message names.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> from pathlib import Path
+    >>> drawing = '<svg width="4mm" viewBox="0 0 8 4"><rect width="4" height="2"/></svg>'
+    >>> _ = Path("bar.svg").write_text(drawing)
+    >>> shape = ss.read("bar.svg")
+    >>> shape, shape.unit
+    (<Shape bar: 1 loop, 4 pieces, nonzero>, 0.5)
     """
     with _parts(path, options) as parts:
         return united(parts)

@@ -118,6 +118,15 @@ def write(
         cannot be written.
     MissingExtraError
         For ``.dxf`` without ezdxf.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> ss.write("grown.svg", ss.offset(square, 1))
+    >>> ss.write("grown.nc", ss.offset(square, 1), milling=ss.Milling(feed=300, depth=2))
+    >>> round(sum(c.area for c in ss.offset(ss.read("grown.svg"), 0)), 6)  # 32 + pi
+    35.141593
     """
     check_known("write", options, WriteOptions)
     if isinstance(contours, SplineSDF):

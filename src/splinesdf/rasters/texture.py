@@ -65,6 +65,17 @@ class Texture:
     name : str
     notes : tuple of str
         What is to be known of the values, one line each.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> picture = ss.texture(square, 7, range=2)
+    >>> picture.texel, picture.x.tolist()
+    ((1.0, 1.0), [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0])
+    >>> picture.values[3].tolist()
+    [1.0, 0.0, -1.0, -2.0, -1.0, 0.0, 1.0]
+    >>> picture.save("square.npy")
     """
 
     values: Floats

@@ -84,6 +84,20 @@ class SplineSDF:
     element : Element
         What its B-splines are, see `splinesdf.spaces`: quadratic unless given. Others are
         evaluated and saved; outside the domain and on level sets they are not answered for.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> sdf = ss.fit(ss.Shape.from_formula("cos(t)", "sin(t)"), tolerance=0.01).spline
+    >>> points = [[0.5, 0.0], [0.0, 2.0]]
+    >>> sdf(points).round(1).tolist(), sdf.inside(points).tolist()
+    ([-0.5, 1.0], [True, False])
+    >>> sdf.gradient(points).shape, sdf.hessian(points).shape
+    ((2, 2), (2, 2, 2))
+    >>> len(sdf.contours(0.0)), sdf.grid(5, 4).distance.shape
+    (1, (4, 5))
+    >>> code, table = sdf.to_glsl("disk")
+    >>> sdf.save("disk.npz")
     """
 
     mesh: Mesh
@@ -376,5 +390,14 @@ def _check_outside(outside: str) -> None:
 
 
 def load(path: str | os.PathLike[str]) -> SplineSDF:
-    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one."""
+    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> sdf = ss.fit(ss.example("gamma1"), tolerance=0.05).spline
+    >>> sdf.save("gamma1.json")
+    >>> bool(ss.load("gamma1.json")((0.3, 0.4)) == sdf((0.3, 0.4)))
+    True
+    """
     return SplineSDF(*read_archive(path))

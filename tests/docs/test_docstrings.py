@@ -1,0 +1,44 @@
+"""Every public name has an example in its docstring, and all examples are right."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import inspect
+import pkgutil
+from pathlib import Path
+
+import pytest
+
+import splinesdf as ss
+
+MODULES = [
+    module.name
+    for module in pkgutil.walk_packages(ss.__path__, "splinesdf.")
+    if module.name != "splinesdf.__main__"
+]
+# What an example may call of a class is asked of the class: its methods as a whole.
+CLASSES = [ss.Shape, ss.SplineSDF, ss.Contour, ss.Texture, ss.Atlas]
+
+
+@pytest.mark.parametrize("name", ss.__all__)
+def test_each_public_name_has_an_example(name: str) -> None:
+    text = inspect.getdoc(getattr(ss, name)) or ""
+    assert "\nExamples\n--------\n>>> " in text
+
+
+def _examples(module: str) -> list[doctest.DocTest]:
+    found = doctest.DocTestFinder(exclude_empty=True).find(importlib.import_module(module))
+    return [test for test in found if test.examples]
+
+
+@pytest.mark.parametrize("module", [name for name in MODULES if _examples(name)])
+def test_examples_print_what_they_say(
+    module: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    runner = doctest.DocTestRunner(verbose=False)
+    told: list[str] = []
+    for test in _examples(module):
+        runner.run(test, out=told.append)
+    assert runner.failures == 0, "".join(told)
