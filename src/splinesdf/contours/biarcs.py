@@ -22,6 +22,7 @@ from splinesdf.contours.contour import (
     to_origin,
     unit,
 )
+from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, positive
 
 # Arcs that meet at less than this angle (radians) are joined smoothly, to which the biarcs hold
@@ -73,6 +74,8 @@ def as_arcs(contour: Contour, *, tolerance: float) -> Contour:
     >>> len(contour.arcs), len(arcs.arcs)  # doctest: +SKIP
     (8, 24)
     """
+    if not isinstance(contour, Contour):
+        raise InputError(f"expected a Contour, got {type(contour).__name__}: give them one by one")
     check_tolerance(tolerance, contour.arcs)
     grain = rounding(contour.arcs)
     contour = unfolded(contour)

@@ -133,6 +133,7 @@ def example(name: str, **options: Unpack[ReadOptions]) -> Shape:
 
     Examples
     --------
+    >>> import splinesdf
     >>> splinesdf.example("gamma2")
     <Shape gamma2: 1 loop, 96 pieces, nonzero>
     """

@@ -96,7 +96,8 @@ class Atlas:
     >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
     >>> disk = ss.Shape.from_formula("2 + 2*cos(t)", "2 + 2*sin(t)")
     >>> icons = ss.atlas({"square": square, "disk": disk}, size=16, range=4)
-    >>> [glyph["name"] for glyph in icons.layout()["glyphs"]]
+    >>> import json
+    >>> [glyph["name"] for glyph in json.loads(icons.layout())["glyphs"]]
     ['square', 'disk']
     >>> icons.pixels().dtype
     dtype('uint8')

@@ -11,13 +11,18 @@ cell, which float32 does exactly; what is left is the rounding of the point itse
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.glsl import check_name, comment, corners, vector
-from splinesdf.meshes import Grid, Mesh, Quadtree
+from splinesdf.meshes import Grid, Quadtree
+
+if TYPE_CHECKING:
+    from splinesdf.splines.spline import SplineSDF
 
 # Texels in a row of the table, and rows: the size of texture that all of WebGL2 has. More: a phone
 # refuses the table; fewer: fits that would do are refused. It is room for 1.8 million cells.
@@ -89,23 +94,37 @@ _IN_TREE = """\
     st -= 0.5;"""
 
 
-def spline_shader(
-    mesh: Mesh, powers: Floats, name: str, title: str, y_down: bool
-) -> tuple[str, NDArray[np.float32]]:
-    """The GLSL of a spline whose cells are in power form, and its table.
+def to_glsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float32]]:
+    """The spline as functions of GLSL, and the table of its numbers for a texture.
 
     Parameters
     ----------
-    mesh : Grid or Quadtree
-    powers : ndarray, shape (n_cells, 8)
-        a0 ... a7 of `splinesdf.spaces.kernels.evaluation`.
     name : str
-        Of the function.
-    title : str
-        The comment of the first line.
-    y_down : bool
+        Of ``float sdf(vec2 p)``; there is ``vec3 sdf_and_gradient(vec2 p)``, too, p in the shape's
+        coordinates, for GLSL 3.30 and GLSL ES 3.00 (WebGL 2) on.
+
+    Returns
+    -------
+    str
+        Beyond the domain: the value at its nearest point and the distance to that, which continues
+        the spline, but may be more than the distance.
+    ndarray of float32, shape (rows, 2048, 4)
+        It goes as it is into a texture of RGBA32F with nearest filtering, the uniform
+        ``sdf_table``.
+
+    Raises
+    ------
+    InputError
+        If the spline is cubic, GLSL does not take the name, a texture of 2048 x 2048 does not hold
+        the numbers, or the domain is so far from the origin that float32 does not tell places in
+        it apart.
     """
     check_name(name)
+    if spline.element.degree != 2:
+        raise InputError(
+            f"expected a quadratic spline for shaders, got a {spline.element.name} one"
+        )
+    mesh, powers = spline.mesh, spline.element.table(spline.ordinates)
     assert isinstance(mesh, Grid | Quadtree)
     low, high = corners(mesh.domain)
     depth, numbers = 0, np.empty(0)
@@ -120,8 +139,8 @@ def spline_shader(
     m, n = mesh.shape
     names = {"name": name, "m": m, "n": n, "low": low, "high": high, "counts": vector((m, n))}
     text = _FUNCTION.format(
-        title=comment(title),
-        axis=", whose y points down" if y_down else "",
+        title=comment(repr(spline)[1:-1]),
+        axis=", whose y points down" if spline.y_down else "",
         rows=len(table),
         wide=_WIDE,
         first=2 * len(powers),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import nested
@@ -16,8 +16,11 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, as_floats, as_points
 from splinesdf.ground.blocks import in_blocks
 from splinesdf.ground.brief import brief, counted, without_caches
+from splinesdf.ground.card import Picture, card
+from splinesdf.ground.doors import public
+from splinesdf.ground.values import by_value
 from splinesdf.meshes import Box, Mesh
-from splinesdf.meshes.lattice import DistanceGrid, node_count
+from splinesdf.meshes.lattice import DistanceGrid, Nodes, grid_nodes
 from splinesdf.meshes.mesh import check_domain, frames
 from splinesdf.shapes.shape import Shape
 from splinesdf.spaces.element import Element
@@ -32,13 +35,16 @@ from splinesdf.splines.archive import (
     write_archive,
 )
 from splinesdf.splines.border import border_of, extend_lattice
-from splinesdf.splines.finite_elements import skfem_basis
-from splinesdf.splines.lattice_values import values_on_lattice
+from splinesdf.splines.finite_elements import to_skfem
 from splinesdf.splines.level_sets import contours
+from splinesdf.splines.nodes import values_at_nodes
 from splinesdf.splines.provenance import Provenance
-from splinesdf.splines.shader import spline_shader
+from splinesdf.splines.shader import to_glsl
 from splinesdf.splines.tables import Border
 from splinesdf.splines.triangles import Triangles, quadratic_triangles
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 # After the first step along the gradient, which an exact distance would make the last, so many
 # Newton steps bring the point onto the zero level set. Each squares what is left of the error.
@@ -50,6 +56,7 @@ _NODES = 8
 Outside = Literal["extend", "nan"]
 
 
+@by_value
 @without_caches
 @dataclass(frozen=True, eq=False)
 class SplineSDF:
@@ -142,14 +149,19 @@ class SplineSDF:
         return self._evaluate(array, 0, outside)[0].reshape(array.shape[:-1])
 
     def grid(
-        self, nx: int, ny: int, *, domain: Box | None = None, outside: Outside = "extend"
+        self,
+        nx: Nodes,
+        ny: int | None = None,
+        *,
+        domain: Box | None = None,
+        outside: Outside = "extend",
     ) -> DistanceGrid:
         """Values at the nodes of a grid, its border included, quicker than point by point.
 
         Parameters
         ----------
         nx, ny : int
-            Nodes each way, at least 2.
+            Nodes each way, at least 2: two numbers, a pair of them, or one for both.
         domain : (xmin, ymin, xmax, ymax), optional
             The spline's own unless given.
         outside : {"extend", "nan"}
@@ -162,15 +174,12 @@ class SplineSDF:
         """
         _check_outside(outside)
         box = self.domain if domain is None else check_domain(domain)
-        x, y = (
-            np.linspace(box[0], box[2], node_count(nx, "nx")),
-            np.linspace(box[1], box[3], node_count(ny, "ny")),
-        )
+        x, y = grid_nodes(nx, ny, box)
         few = len(x) * len(y) < _NODES * len(self.ordinates)
         if few or self.element.power_form is None:
-            nodes = np.stack(np.meshgrid(x, y), axis=-1)
-            return DistanceGrid(x, y, self(nodes, outside=outside))
-        distance = values_on_lattice(self.mesh, self._frames, self._table, (x, y))
+            points = np.stack(np.meshgrid(x, y), axis=-1)
+            return DistanceGrid(x, y, self(points, outside=outside))
+        distance = values_at_nodes(self.mesh, self._frames, self._table, x, y)
         if outside == "extend":
             extend_lattice(self.domain, self._border, x, y, distance)
         return DistanceGrid(x, y, distance)
@@ -244,7 +253,7 @@ class SplineSDF:
         """Whether the value is negative, shape (..., 2) -> (...,)."""
         return np.asarray(self(points, outside=outside) < 0.0)
 
-    def contours(self, level: float) -> list[Contour]:
+    def contours(self, level: float = 0.0) -> list[Contour]:
         """The level set ``s = level`` as chains of conic arcs, lower values on their left.
 
         Closed and with a continuous tangent, but for those that leave the domain (``closed`` is
@@ -257,6 +266,25 @@ class SplineSDF:
             unit, page = self.shape.unit, self.shape.page
             found = [replace(contour, unit=unit, page=page) for contour in found]
         return nested(found)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the values in colors on axes, the current ones unless given, and return them."""
+        axes: Axes = public("plot").drawn(self, ax)
+        return axes
+
+    def _repr_html_(self) -> str:
+        return self._card("SplineSDF")
+
+    def _card(self, kind: str) -> str:
+        xmin, ymin, xmax, ymax = self.domain
+        figures = {
+            "cells": f"{len(self.ordinates):,} ({self.mesh.description})",
+            "domain": f"{xmax - xmin:.6g} × {ymax - ymin:.6g}",
+            "errors": "not known" if self.made is None else self.made.errors,
+        }
+        zero = self.contours() if self.element.degree == 2 else []
+        picture = Picture([c.points() for c in zero], self.domain, "nonzero", self.y_down)
+        return card(kind, self.name, figures, picture)
 
     def triangles(self) -> Triangles:
         """The spline as a conforming mesh of quadratic Lagrange triangles, exact to rounding.
@@ -271,39 +299,8 @@ class SplineSDF:
         """
         return quadratic_triangles(self.mesh, self.element, self.ordinates)
 
-    def to_skfem(self) -> tuple[Any, Floats]:
-        """The spline for scikit-fem: the basis of its `triangles`, and the coefficients in it.
-
-        The basis is of ``ElementTriP2`` on a ``MeshTri``. With ``basis, vector = s.to_skfem()``
-        the values at points (2, n) are ``basis.interpolator(vector)(x)``.
-
-        Raises
-        ------
-        InputError
-            As `triangles`.
-        MissingExtraError
-            Without scikit-fem.
-        """
-        return skfem_basis(self.triangles())
-
-    def to_glsl(self, name: str = "sdf") -> tuple[str, NDArray[np.float32]]:
-        """The spline as functions of GLSL, and the table of its numbers for a texture.
-
-        ``float sdf(vec2 p)`` and ``vec3 sdf_and_gradient(vec2 p)``, p in the shape's coordinates,
-        for GLSL 3.30 and GLSL ES 3.00 (WebGL 2) on. The table, float32 (rows, 2048, 4), goes as it
-        is into a texture of RGBA32F with nearest filtering, the uniform ``sdf_table``. Beyond the
-        domain: the value at its nearest point and the distance to that, which continues it, but
-        may be more than the distance.
-
-        Raises
-        ------
-        InputError
-            If the spline is cubic, GLSL does not take the name, a texture of 2048 x 2048 does not
-            hold the numbers, or the domain is so far from the origin that float32 does not tell
-            places in it apart.
-        """
-        self._check_quadratic("another for shaders")
-        return spline_shader(self.mesh, self._table, name, repr(self)[1:-1], self.y_down)
+    to_skfem = to_skfem
+    to_glsl = to_glsl
 
     def to_dict(self) -> dict[str, Any]:
         """All that a saved file holds, as texts, numbers, lists and dicts, for JSON.

@@ -1,4 +1,4 @@
-"""Values of a spline at the nodes of a lattice, from cell to cell: no node looks for its cell."""
+"""A spline at the nodes of a grid: each cell's polynomials at the nodes in it."""
 
 from __future__ import annotations
 
@@ -10,36 +10,31 @@ from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.blocks import in_blocks, processors
 from splinesdf.meshes import Mesh
 
+# Cells a thread works on at a time. More: some threads idle at the end; fewer: handing out costs.
+_BLOCK = 4096
 
-def values_on_lattice(
-    mesh: Mesh, frames: Floats, powers: Floats, lines: tuple[Floats, Floats]
-) -> Floats:
-    """Values at the nodes of increasing lines x and y, NaN outside the domain.
+
+def values_at_nodes(mesh: Mesh, frames: Floats, table: Floats, x: Floats, y: Floats) -> Floats:
+    """Values at increasing x (m,) and y (n,), NaN outside the domain: (n, m).
 
     Parameters
     ----------
-    mesh : Grid or Quadtree
-    frames, powers : ndarray, shapes (n, 4), (n, 8)
-        As `splinesdf.spaces.kernels.evaluation.evaluate_lattice` has them.
-    lines : (x, y), shapes (nx,), (ny,)
-
-    Returns
-    -------
-    ndarray, shape (ny, nx)
+    frames, table : ndarray
+        Of the cells, as evaluation takes them.
     """
     from splinesdf.spaces.kernels.evaluation import evaluate_lattice  # Numba loads only when used
 
-    x, y = lines
     columns, rows = _nodes_of_cells(mesh, x, 0), _nodes_of_cells(mesh, y, 1)
+    value = np.full((len(y), len(x)), np.nan)
     local_x, local_y = x - mesh.domain[0], y - mesh.domain[1]
-    values = np.full((len(y), len(x)), np.nan)
 
     def work(part: slice) -> None:
-        cells = frames[part], powers[part], columns[part], rows[part]
-        evaluate_lattice(*cells, local_x, local_y, values)
+        cells = frames[part], table[part], columns[part], rows[part]
+        evaluate_lattice(*cells, local_x, local_y, value)
 
-    in_blocks(len(powers), work, size=min(4096, math.ceil(len(powers) / (4 * processors()))))
-    return values
+    count = len(frames)
+    in_blocks(count, work, size=min(_BLOCK, math.ceil(count / (4 * processors()))))
+    return value
 
 
 def _nodes_of_cells(mesh: Mesh, nodes: Floats, axis: int) -> Ints:
