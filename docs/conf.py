@@ -34,3 +34,18 @@ html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sourcelink = False
+
+
+def _escape_bars(_app, _what, _name, _object, _options, lines):  # type: ignore[no-untyped-def]
+    """Docstrings write |s - u| for an absolute value, which is a substitution to Sphinx."""
+    for k, line in enumerate(lines):
+        if not line.lstrip().startswith((">>>", "...")):
+            parts = line.split("``")
+            parts[::2] = [part.replace("|", r"\|") for part in parts[::2]]
+            lines[k] = "``".join(parts)
+
+
+def setup(app):  # type: ignore[no-untyped-def]
+    """Sphinx calls this."""
+    # Before numpydoc, whose own sections would be touched otherwise.
+    app.connect("autodoc-process-docstring", _escape_bars, priority=400)

@@ -80,8 +80,11 @@ def _python(block: Block, page: Path, names: dict[str, Any]) -> str:
 
 
 def _shell(block: Block, page: Path, _names: dict[str, Any]) -> str:
-    """What the commands print; none may fail, or do anything but run ours."""
-    printed = io.StringIO()
+    """What the commands print; none may fail, or do anything but run ours.
+
+    Notes go to stderr, that of compiling too, which is said only the first time.
+    """
+    printed, notes = io.StringIO(), io.StringIO()
     for line in block.text.replace("\\\n", " ").splitlines():
         program, *arguments = shlex.split(line, comments=True) or [""]
         if program == "":
@@ -89,11 +92,11 @@ def _shell(block: Block, page: Path, _names: dict[str, Any]) -> str:
         assert program == "splinesdf", f"{page}:{block.line} runs {program}: not a command of ours"
         given, sys.argv = sys.argv, ["splinesdf", *arguments]
         try:
-            with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+            with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(notes):
                 main()
         except SystemExit as ended:
             status = ended.code
         finally:
             sys.argv = given
-        assert status in (0, None), f"{page}:{block.line} {line}\n{printed.getvalue()}"
+        assert status in (0, None), f"{page}:{block.line} {line}\n{notes.getvalue()}"
     return printed.getvalue()

@@ -189,7 +189,7 @@ def fit(
     ----------------
     space : {"hierarchical", "tensor", "uniform"}
     element : {"quadratic", "cubic"}
-        The B-splines, see `splinesdf.spaces`: C¹, of order 3 both. The cubic ones are for
+        The B-splines, see ``splinesdf.spaces``: C¹, of order 3 both. The cubic ones are for
         comparison: they have uniform space only, and neither level sets nor values outside.
     operator : str, optional
         The quasi-interpolant. Of the quadratic element S, W, V or P: unless given S, which needs

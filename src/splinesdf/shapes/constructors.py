@@ -111,7 +111,7 @@ def from_nurbs(
     degree : int
         From 1 to 25.
     knots : array_like, shape (n + degree + 1,), optional
-        Equal steps between repeated ends if not given; see `nurbs_pieces` for other
+        Equal steps between repeated ends if not given; see ``nurbs_pieces`` for other
         conventions, and for those of periodic curves.
     weights : array_like, shape (n,), optional
         Positive; the control points are not multiplied by them.
@@ -215,8 +215,8 @@ def circle(cls: type[Shape], center: ArrayLike, radius: float, *, name: str = "c
     Examples
     --------
     >>> import splinesdf as ss
-    >>> ss.Shape.circle((1.0, 2.0), 0.5).box
-    (0.5, 1.5, 1.5, 2.5)
+    >>> [round(side, 9) for side in ss.Shape.circle((1.0, 2.0), 0.5).box]
+    [0.5, 1.5, 1.5, 2.5]
     """
     middle, r = as_points(center), positive(radius, "radius")
     if middle.shape != (2,) or not np.isfinite(middle).all():

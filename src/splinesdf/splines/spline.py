@@ -89,7 +89,7 @@ class SplineSDF:
     made : Provenance or None
         From what request it was made, and how well it answers it.
     element : Element
-        What its B-splines are, see `splinesdf.spaces`: quadratic unless given. Others are
+        What its B-splines are, see ``splinesdf.spaces``: quadratic unless given. Others are
         evaluated and saved; outside the domain and on level sets they are not answered for.
 
     Examples
