@@ -12,6 +12,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.meshes import Quadtree
 from splinesdf.splines.quasi import quasi_interpolate
+from tests.docs.pages import DOCS, blocks_of
 
 # A vertex shader takes the points, and what it answers is caught before anything is painted.
 _RUN = """([code, call, points, values, wide, high, kind]) => {
@@ -170,3 +171,27 @@ def test_a_texture_is_sampled_where_its_texels_are(
     # A filter counts places within a texel in 256ths; half a step of 8 bits.
     limit = 2.0 / 256.0 * picture.texel[0] + (0.0 if kind == "floats" else 3.0 / 255.0)
     assert np.abs(got - exact)[seen].max() <= limit
+
+
+_COMPILE = """text => {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  const shader = gl.createShader(gl.FRAGMENT_SHADER);
+  const head = '#version 300 es\\nprecision highp float; precision highp int;\\n';
+  gl.shaderSource(shader, head + text);
+  gl.compileShader(shader);
+  return gl.getShaderParameter(shader, gl.COMPILE_STATUS) ? '' : gl.getShaderInfoLog(shader);
+}"""
+
+
+def test_shaders_of_the_site_compile(launch: Callable[..., Any]) -> None:
+    tab = launch().new_page()
+    shape = ss.example("gamma1")
+    pages = [DOCS / "howto" / "textures.md", DOCS / "textures.md"]
+    blocks = [block.text for page in pages for block in blocks_of(page) if block.kind == "glsl"]
+    assert len(blocks) == 3
+    code, _ = ss.fit(shape, tolerance=0.05).spline.to_glsl("logo")
+    before = [ss.texture(shape, 16, range=0.5).to_glsl("logo"), code, ""]
+    for own, block in zip(before, blocks, strict=True):
+        text = own + block.replace("#version 330", "")
+        assert tab.evaluate(_COMPILE, text) == "", text
+    assert "no matching" in tab.evaluate(_COMPILE, blocks[0])
