@@ -13,7 +13,6 @@ import numpy as np
 
 from splinesdf.contours.contour import Contour
 from splinesdf.distance.depth import deepest
-from splinesdf.errors import MissingExtraError
 from splinesdf.fits.fit import FitResult
 from splinesdf.io.enclosed import Sides
 from splinesdf.io.remeasured import Worst
@@ -319,10 +318,6 @@ def _plain(text: str, style: str = "") -> Text:
 
 
 def _console(*, stderr: bool = False) -> Console:
-    try:
-        from rich.console import Console
-    except ImportError as error:
-        raise MissingExtraError(
-            'the command line needs rich: python -m pip install "splinesdf[cli]"'
-        ) from error
+    from rich.console import Console
+
     return Console(stderr=stderr)
