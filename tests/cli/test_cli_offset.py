@@ -102,6 +102,13 @@ def test_a_damaged_file_has_status_1(
     assert "Traceback" not in err
 
 
+def test_what_is_the_level_set_of_a_fit_is_said(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("splinesdf.offsets.offset.contours_at", lambda *_, **__: None)
+    status, _, err = run("plate.svg", "-d", "2", "--tolerance", "0.5", "-o", "a.svg")
+    assert status == 0
+    assert "note: at 2 the offset is the level set of a fit, within the tolerance, of" in err
+
+
 def test_options_reach_the_program(run: Run, tmp_path: Path) -> None:
     status, _, err = run(
         *("plate.svg", "-d", "-1", "--tolerance", "0.01", "-o", "a.nc", "--units", "inch"),
