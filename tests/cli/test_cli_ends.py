@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import itertools
 import json
 import re
@@ -131,6 +132,17 @@ def test_what_ends_a_command_is_said_in_a_line(
     done = run("offset", "gamma1", "-d", "0.1", "--tolerance", "0.01", "-o", "a.svg")
     assert (done.status, done.out, done.err.lstrip("\n")) == (status, "", says)
     assert not Path("a.svg").exists()
+
+
+def test_streams_that_are_no_files_take_what_is_said(
+    run: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As a program's that starts the command line within itself."""
+    taken = io.StringIO()
+    monkeypatch.setattr(sys, "stdout", taken)
+    done = run("info", "part")
+    assert (done.status, done.out) == (0, "")
+    assert "9 (evenodd)" in taken.getvalue()
 
 
 def test_no_command_is_all_commands(run: Command) -> None:

@@ -45,9 +45,8 @@ def write_on_any_terminal() -> None:
             stream.reconfigure(errors="splinesdf")
 
 
-def _in_ascii(error: UnicodeError) -> tuple[str | bytes, int]:
-    if not isinstance(error, UnicodeEncodeError):
-        raise error
+def _in_ascii(error: Any) -> tuple[str, int]:
+    """What to write in place of the signs of a `UnicodeEncodeError`, and where to go on."""
     signs = error.object[error.start : error.end]
     return signs.translate(_IN_ASCII).encode("ascii", "backslashreplace").decode(), error.end
 
