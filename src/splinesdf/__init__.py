@@ -1,5 +1,6 @@
 """Closed curves to a compact C¹ piecewise-quadratic signed distance function."""
 
+from splinesdf import plot
 from splinesdf.contours.biarcs import as_arcs
 from splinesdf.contours.contour import Contour
 from splinesdf.distance.exact import (
@@ -19,6 +20,7 @@ from splinesdf.errors import (
 from splinesdf.fits.fit import FitResult, fit
 from splinesdf.fits.interpolation import interpolate
 from splinesdf.ground.limits import Limits
+from splinesdf.ground.progress import Progress
 from splinesdf.io.input import example, read, read_all
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
@@ -43,6 +45,7 @@ __all__ = [
     "Milling",
     "MissingExtraError",
     "OpenContourError",
+    "Progress",
     "Projection",
     "Shape",
     "SplineSDF",
@@ -59,6 +62,7 @@ __all__ = [
     "interpolate",
     "load",
     "offset",
+    "plot",
     "project",
     "read",
     "read_all",

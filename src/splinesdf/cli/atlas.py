@@ -68,7 +68,7 @@ def atlas(
             scale = float(em)
         except ValueError as error:
             raise ss.InputError(f"expected --em as a number or each, got {em!r:.40}") from error
-    with working("computing distances (the first run compiles)"):
+    with working("computing distances"):
         found = ss.atlas(
             source,
             size=size,

@@ -115,7 +115,7 @@ def _check_fit(path: str, element: str) -> None:
 
 def fitted(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:
     """Fit a shape, and say how far it is."""
-    with working(f"fitting {shape.name} (the first run compiles)") as say:
+    with working(f"fitting {shape.name}") as say:
         for result in fit_steps(shape, tolerance=tolerance, **options):
             say(
                 f"fitting {shape.name}: {result.cells:,} cells, error {result.error:.2e}, "

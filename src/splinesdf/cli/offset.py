@@ -200,7 +200,7 @@ def _contours(
         if step is None:
             contours = offsets_of(source, distances, share * tolerance)
         else:
-            with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
+            with working(f"offsetting {source.name} in steps of {step:g}"):
                 contours = ss.offset(source, step=step, tolerance=share * tolerance, coarse=True)
     except ss.SplineSDFError as error:
         if share < 1.0 and "tolerance" in str(error):

@@ -182,7 +182,7 @@ def offset_tolerance_of(
 def offsets_of(shape: ss.Shape, distances: Iterable[float], tolerance: float) -> list[ss.Contour]:
     """The offsets at distances, one after the other."""
     contours = []
-    with working("offsetting (the first run compiles)") as say:
+    with working("offsetting") as say:
         for distance in distances:
             say(f"offsetting {shape.name} by {distance:g}")
             contours += ss.offset(shape, distance, tolerance=tolerance, coarse=True)

@@ -52,7 +52,7 @@ def texture(
     checked_format(output, bits)
     shape = ss.load(source) if holds_fit(source) else read_shape(source, reading)
     check_outputs(source, output)
-    with working("computing distances (the first run compiles)"):
+    with working("computing distances"):
         found = ss.texture(shape, texels, range=width, domain=domain, rows=rows)
     found.save(output, bits=bits)
     for note in found.notes:
