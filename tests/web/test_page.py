@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.web import block
-from splinesdf.web.levels import level_at, level_files, ready_distances
+from splinesdf.web.levels import Level, level_at, level_file, level_files, ready_distances
 from splinesdf.web.page import MODULES, page_text, write_page
 from tests.named_shapes import gamma
 
@@ -127,5 +126,11 @@ def test_kinds_of_files_whose_library_is_missing_are_left_out(
 ) -> None:
     levels = [level_at(gamma("gamma1"), 0.1)]
     assert set(level_files(levels)) == {"svg", "dxf"}
-    monkeypatch.setitem(sys.modules, "ezdxf", None)
+
+    def without_ezdxf(level: Level, kind: str) -> str:
+        if kind == "dxf":
+            raise ss.MissingExtraError("DXF needs ezdxf")
+        return level_file(level, kind)
+
+    monkeypatch.setattr("splinesdf.web.levels.level_file", without_ezdxf)
     assert set(level_files(levels)) == {"svg"}
