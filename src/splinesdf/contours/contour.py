@@ -20,7 +20,7 @@ from splinesdf.ground.arrays import (
 )
 from splinesdf.ground.brief import brief, counted
 from splinesdf.ground.card import Picture, card
-from splinesdf.ground.doors import public
+from splinesdf.ground.doors import above, public
 from splinesdf.ground.values import by_value
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ class Contour:
         tolerance : float, optional
             Of hyperbolas, which become cubics: as that of `points`.
         """
-        data: str = public("io").writers.svg.path_data(self, self._tolerance(tolerance))
+        data: str = above("io.writers.svg").path_data(self, self._tolerance(tolerance))
         return data
 
     def plot(self, ax: Axes | None = None) -> Axes:
