@@ -1,0 +1,112 @@
+"""Strokes of subpaths that go nowhere: dots, as wide as the stroke (SVG 2, 13.5.1 and 9.5.1)."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import splinesdf as ss
+from tests.drawings import wrong_pixels
+
+HEAD = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 100'>"
+PEN = "fill='none' stroke='#000' stroke-width='10' stroke-linecap='{}'"
+AREA = {"round": 25.0 * math.pi, "square": 100.0}
+# How many dots (60, 32) has, which all are the same one.
+NOWHERE = {
+    "M60 32z": 1,
+    "M60 32 Z": 1,
+    "M60 32zz": 1,
+    "M60 32L60 32": 1,
+    "M60 32 h0z": 1,
+    "M60 32A5 5 0 0 0 60 32": 1,
+    "m60 32a5 5 0 0 0 0 0z": 1,
+    "M9 9M60 32z": 1,
+    "M60 32": 0,
+    "M60 32M60 32": 0,
+}
+
+
+def drawing(folder: Path, body: str, cap: str) -> tuple[Path, str]:
+    text = f"{HEAD}<g {PEN.format(cap)}>{body}</g></svg>"
+    (folder / "dots.svg").write_text(text)
+    return folder / "dots.svg", text
+
+
+@pytest.mark.parametrize("cap", ["butt", "round", "square"])
+@pytest.mark.parametrize("d", NOWHERE)
+def test_a_subpath_that_goes_nowhere_is_a_dot(tmp_path: Path, d: str, cap: str) -> None:
+    path, text = drawing(tmp_path, f"<path d='{d}'/>", cap)
+    if not NOWHERE[d] or cap == "butt":
+        assert wrong_pixels(text, None, strokes=True) == 0
+        with pytest.raises(ss.InputError, match="encloses something"):
+            ss.read(path, stroke="outline")
+        return
+    shape = ss.read(path, stroke="outline")
+    assert wrong_pixels(text, shape, strokes=True) == 0
+    assert abs(sum(c.area for c in ss.offset(shape, 0.0, tolerance=1e-6)) - AREA[cap]) < 1e-4
+    assert shape.box == pytest.approx((55.0, 27.0, 65.0, 37.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("cap", ["butt", "round", "square"])
+@pytest.mark.parametrize(
+    "d",
+    [
+        "M20 20 40 20 40 40zM60 70z",
+        "M60 70zM20 20 40 20 40 40z",
+        "M20 20H40zL20 20",
+        "M20 20H40zz",
+        "M20 20H40v20zz",
+        "M20 20H40zM60 70zm20 0zh-9",
+        "M60 70zL80 80",
+    ],
+)
+def test_dots_beside_lines_are_as_a_renderer_paints_them(tmp_path: Path, d: str, cap: str) -> None:
+    path, text = drawing(tmp_path, f"<path d='{d}'/>", cap)
+    assert wrong_pixels(text, ss.read(path, stroke="outline"), strokes=True) == 0
+
+
+def test_an_arc_of_no_length_in_a_line_is_omitted(tmp_path: Path) -> None:
+    """As the specification has it: resvg leaves out the cap there."""
+    path, text = drawing(tmp_path, "<path d='M20 20a5 5 0 0 0 0 0H40'/>", "round")
+    shape = ss.read(path, stroke="outline")
+    assert wrong_pixels(text.replace("a5 5 0 0 0 0 0", ""), shape, strokes=True) == 0
+
+
+def test_a_dot_is_stretched_as_its_element_is(tmp_path: Path) -> None:
+    body = "<path d='M30 20z' transform='rotate(30) scale(2 1)'/><path d='M80 70z'/>"
+    path, text = drawing(tmp_path, body, "square")
+    assert wrong_pixels(text, ss.read(path, stroke="outline"), strokes=True) == 0
+
+
+@pytest.mark.parametrize(("offset", "there"), [(0, True), (5, False)])
+def test_a_dot_is_dashed_by_what_is_at_its_start(tmp_path: Path, offset: int, there: bool) -> None:
+    body = f"<path d='M80 70z' stroke-dasharray='4 3' stroke-dashoffset='{offset}'/>"
+    path, _ = drawing(tmp_path, f"<line x2='9'/>{body}", "square")
+    shape = ss.read(path, stroke="outline")
+    assert bool(ss.signed_distance(shape, (84.0, 74.0)) < 0.0) == there
+    assert shape.box[2] == pytest.approx(85.0 if there else 14.0)
+
+
+@pytest.mark.parametrize(("tag", "there"), [("polygon", True), ("polyline", False)])
+def test_a_polygon_of_a_point_is_closed_and_a_polyline_is_not(
+    tmp_path: Path, tag: str, there: bool
+) -> None:
+    """As the specification has it: resvg draws neither."""
+    path, _ = drawing(tmp_path, f"<line x2='9'/><{tag} points='60,32'/>", "square")
+    shape = ss.read(path, stroke="outline")
+    assert bool(ss.signed_distance(shape, (64.0, 36.0)) < 0.0) == there
+    assert shape.box[2] == pytest.approx(65.0 if there else 14.0)
+
+
+@pytest.mark.parametrize("stroke", ["none", "centre"])
+def test_where_nothing_is_stroked_a_dot_is_nothing(tmp_path: Path, stroke: str) -> None:
+    path = tmp_path / "dots.svg"
+    square = "<path d='M60 32zM10 10H20V20H10zM70 70z'/><path d='M1 1z'/>"
+    path.write_text(f"{HEAD}{square}<path d='M80 5z' fill='none' stroke='red'/></svg>")
+    shape = ss.read(path, stroke=stroke)
+    assert shape.loop_count == 1
+    assert shape.box == (10.0, 10.0, 20.0, 20.0)
+    assert any("1 path without area" in note for note in shape.notes) == (stroke == "none")
+    assert any("2 path without area" in note for note in shape.notes) == (stroke == "centre")
