@@ -7,10 +7,10 @@ from typing import Any
 
 import click
 
-import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.shapes import (
     holds_fit,
+    load_fit,
     read_shape,
     reading_options,
 )
@@ -22,7 +22,7 @@ from splinesdf.cli.shapes import (
 def info(file: str, reading: dict[str, Any]) -> None:
     """Describe FILE: a saved fit (.npz, .json) or a shape."""
     if holds_fit(file):
-        spline = ss.load(file)
+        spline = load_fit(file, reading)
         report.print_pairs(
             fit=spline.name or file,
             cells=f"{len(spline.ordinates):,} ({spline.mesh.description})",

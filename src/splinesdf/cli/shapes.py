@@ -68,6 +68,8 @@ _NAMES = (
     "location",
     "limits",
 )
+# What those are called on the command line that are not called so.
+_CALLED = {"layers": "layer", "ids": "id", "location": "axis", "limits": "limit"}
 
 
 def reading_options(command: Command) -> Command:
@@ -140,6 +142,23 @@ def holds_fit(path: str) -> bool:
     """Whether a file is a saved fit: by its ending, .json by what is in it."""
     suffix = Path(path).suffix.lower()
     return suffix == ".npz" or (suffix == ".json" and is_fit(Path(path)))
+
+
+def load_fit(path: str, reading: Mapping[str, Any], *, limited: bool = False) -> ss.SplineSDF:
+    """A saved fit, which no option of reading says anything about: they are refused.
+
+    A limit may be given where a command reads another file beside it (``limited``).
+    """
+    for name, value in reading.items():
+        given = value is not None and value is not False and value not in ((), ss.Limits())
+        if not given or (limited and name == "limits"):
+            continue
+        option = "--" + _CALLED.get(name, name).replace("_", "-")
+        raise ss.InputError(
+            f"expected a shape for {option}, got a saved fit, {path!r:.200}: leave it out, or give "
+            "the file that the fit was made of"
+        )
+    return ss.load(path)
 
 
 def check_outputs(source: str, *outputs: str | None) -> None:

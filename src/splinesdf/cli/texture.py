@@ -9,7 +9,7 @@ import click
 import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.report import working
-from splinesdf.cli.shapes import check_outputs, holds_fit, read_shape, reading_options
+from splinesdf.cli.shapes import check_outputs, holds_fit, load_fit, read_shape, reading_options
 from splinesdf.rasters.images import checked_format
 
 
@@ -50,7 +50,7 @@ def texture(
     TIFF and NPY: the distances, negative inside.
     """
     checked_format(output, bits)
-    shape = ss.load(source) if holds_fit(source) else read_shape(source, reading)
+    shape = load_fit(source, reading) if holds_fit(source) else read_shape(source, reading)
     check_outputs(source, output)
     with working("computing distances (the first run compiles)"):
         found = ss.texture(shape, texels, range=width, domain=domain, rows=rows)

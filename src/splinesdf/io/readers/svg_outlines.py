@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_lengths import View, length
 from splinesdf.io.readers.svg_style import GEOMETRY
 from splinesdf.shapes.loops import check_place
