@@ -127,6 +127,27 @@ def test_a_shape_keeps_the_limit_of_its_crossings(tmp_path: Path) -> None:
     assert len(mended.boundary.start) == len(roomy.boundary.start)
 
 
+def test_a_saved_fit_has_the_limits_of_who_reads_it(tmp_path: Path) -> None:
+    """Not those of who wrote it: a file would raise them by itself."""
+    file, count = tmp_path / "a.npz", _crossings(STAR)
+    shape = ss.Shape.from_points(STAR)
+    made = dataclasses.replace(shape, limits=ss.Limits(crossings=10**9, pieces=10**9))
+    dataclasses.replace(ss.interpolate(shape, (2, 2)).spline, shape=made).save(file)
+    usual, tight, roomy = (
+        ss.load(file, limits=limits).shape
+        for limits in (None, ss.Limits(crossings=count - 1), ss.Limits(crossings=count))
+    )
+    assert usual is not None
+    assert tight is not None
+    assert roomy is not None
+    assert usual.limits == ss.Limits()
+    with pytest.raises(ss.InputError, match=f"up to {count - 1:,} crossings"):
+        ss.signed_distance(tight, [0.0, 0.0])
+    assert ss.signed_distance(roomy, [0.0, 0.0]) == ss.signed_distance(shape, [0.0, 0.0])
+    with pytest.raises(ss.InputError, match="expected limits such as"):
+        ss.load(file, limits=9)  # type: ignore[arg-type]
+
+
 def test_pairs_side_by_side_are_counted() -> None:
     corners = [
         corner

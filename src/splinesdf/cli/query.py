@@ -34,7 +34,7 @@ def query(source: str, points: str, output: str | None, reading: dict[str, Any])
     shape's gradient on the boundary itself.
     """
     if holds_fit(source):
-        spline = load_fit(source, reading, limited=True)
+        spline = load_fit(source, reading)
         ask: Callable[[Any], Any] = spline.value_and_gradient
     else:
         shape = read_shape(source, reading)

@@ -69,7 +69,7 @@ _NAMES = (
     "limits",
 )
 # What those are called on the command line that are not called so.
-_CALLED = {"layers": "layer", "ids": "id", "location": "axis", "limits": "limit"}
+_CALLED = {"layers": "layer", "ids": "id", "location": "axis"}
 
 
 def reading_options(command: Command) -> Command:
@@ -144,21 +144,17 @@ def holds_fit(path: str) -> bool:
     return suffix == ".npz" or (suffix == ".json" and is_fit(Path(path)))
 
 
-def load_fit(path: str, reading: Mapping[str, Any], *, limited: bool = False) -> ss.SplineSDF:
-    """A saved fit, which no option of reading says anything about: they are refused.
-
-    A limit may be given where a command reads another file beside it (``limited``).
-    """
+def load_fit(path: str, reading: Mapping[str, Any]) -> ss.SplineSDF:
+    """A saved fit, of which options of reading but limits say nothing: those are refused."""
     for name, value in reading.items():
-        given = value is not None and value is not False and value not in ((), ss.Limits())
-        if not given or (limited and name == "limits"):
+        if name == "limits" or value is None or value is False or value == ():
             continue
         option = "--" + _CALLED.get(name, name).replace("_", "-")
         raise ss.InputError(
             f"expected a shape for {option}, got a saved fit, {path!r:.200}: leave it out, or give "
             "the file that the fit was made of"
         )
-    return ss.load(path)
+    return ss.load(path, limits=reading["limits"])
 
 
 def check_outputs(source: str, *outputs: str | None) -> None:

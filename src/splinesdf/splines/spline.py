@@ -17,6 +17,7 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, as_points
 from splinesdf.ground.blocks import in_blocks, processors
 from splinesdf.ground.brief import brief, counted, without_caches
+from splinesdf.ground.limits import Limits, checked_limits
 from splinesdf.meshes import Box, Grid, Mesh
 from splinesdf.meshes.lattice import DistanceGrid, node_count
 from splinesdf.meshes.mesh import check_domain, frames
@@ -379,9 +380,12 @@ def _check_outside(outside: str) -> None:
         raise InputError(f"expected outside 'extend' or 'nan', got {outside!r:.60}")
 
 
-def load(path: str | os.PathLike[str]) -> SplineSDF:
-    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one."""
-    return SplineSDF(*read_archive(path))
+def load(path: str | os.PathLike[str], *, limits: Limits | None = None) -> SplineSDF:
+    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one.
+
+    A file does not say its own limits: its shape has these, or else the usual ones.
+    """
+    return SplineSDF(*read_archive(path, checked_limits(limits)))
 
 
 def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:
