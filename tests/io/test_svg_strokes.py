@@ -1,4 +1,7 @@
-"""Strokes of subpaths that go nowhere: dots, as wide as the stroke (SVG 2, 13.5.1 and 9.5.1)."""
+"""Strokes of what goes nowhere, or straight back: against resvg's picture, and numbers.
+
+Subpaths that go nowhere are dots, as wide as the stroke (SVG 2, 13.5.1 and 9.5.1).
+"""
 
 from __future__ import annotations
 
@@ -110,3 +113,36 @@ def test_where_nothing_is_stroked_a_dot_is_nothing(tmp_path: Path, stroke: str) 
     assert shape.box == (10.0, 10.0, 20.0, 20.0)
     assert any("1 path without area" in note for note in shape.notes) == (stroke == "none")
     assert any("2 path without area" in note for note in shape.notes) == (stroke == "centre")
+
+
+@pytest.mark.parametrize("join", ["miter", "round", "bevel"])
+@pytest.mark.parametrize("cap", ["butt", "round", "square"])
+@pytest.mark.parametrize(
+    "d",
+    [
+        "M20 20c0 0 40 30 0 0",  # there and back
+        "M20.1 20.3c0 0-5.8 2.1 0 0",
+        "M20 20c0 0 40 30 0 0z",
+        "M20 20c40 30 20 15 10 7.5",
+        "M20 20q40 30 10 7.5",
+        "M20 20c80 60-40-30 40 30",  # there, back, and there
+        "M20 50H40c30 0 30 0 10 0v20",
+        "M20 20c0 0 0 0 40 30",  # handles of no length
+        "M20 20c40 30 40 30 40 30",
+    ],
+)
+def test_straight_curves_are_as_a_renderer_paints_them(
+    tmp_path: Path, d: str, cap: str, join: str
+) -> None:
+    path, text = drawing(tmp_path, f"<path stroke-linejoin='{join}' d='{d}'/>", cap)
+    assert wrong_pixels(text, ss.read(path, stroke="outline"), 256, strokes=True) == 0
+
+
+@pytest.mark.parametrize("steps", ["0.4-1.9-2.4 2.1", "1.5 3.1-3.5-2.9"])
+def test_a_handle_that_rounding_made_is_none(tmp_path: Path, steps: str) -> None:
+    """Where the sum of steps misses a path's start, its end is moved there, and no handle is."""
+    pen = "fill='none' stroke='#000' stroke-width='.9'"
+    path = f"<path {pen} d='M339.1-458.3l{steps}c1.3-.5 2-.2 2-.2z'/>"
+    text = f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='330 -465 15 15'>{path}</svg>"
+    (tmp_path / "handle.svg").write_text(text)
+    assert wrong_pixels(text, ss.read(tmp_path / "handle.svg", stroke="outline"), strokes=True) == 0
