@@ -92,6 +92,13 @@ def test_a_text_of_many_pieces(tmp_path: Path) -> None:
     _limited(tmp_path / name, content, "pieces", pieces, text="8888")
 
 
+def test_a_path_of_many_commands_is_not_left_out_as_a_broken_one(tmp_path: Path) -> None:
+    path = "<path d='M0 0" + "l1 1" * 30 + "'/><rect width='9' height='9'/>"
+    (tmp_path / "a.svg").write_text(f"<svg xmlns='http://www.w3.org/2000/svg'>{path}</svg>")
+    with pytest.raises(ss.InputError, match=r"Limits\(pieces="):
+        ss.read(tmp_path / "a.svg", limits=ss.Limits(pieces=20))
+
+
 def test_crossings_are_counted_before_there_is_memory_for_them() -> None:
     dice = random.Random(1)
     corners = [(dice.random(), dice.random()) for _ in range(3000)]  # 2,000,000 crossings

@@ -229,3 +229,9 @@ def test_contours_at_several_distances_are_no_one_region(tmp_path: Path) -> None
 def test_a_distance_of_each_point_is_another_column(read: Read) -> None:
     text = "contour,distance,x,y\n0,1,0,0\n0,2,4,0\n0,3,4,3\n1,1,9,9\n1,1,8,9\n1,2,8,8"
     assert areas(read("a.csv", text)) == pytest.approx([6.0, 0.5])
+
+
+def test_an_airfoil_of_two_points_is_refused_by_its_line(read: Read) -> None:
+    with pytest.raises(ss.InputError, match="points from line 2 on: expected at least") as caught:
+        read("a.dat", "a line\n0 0\n1 0\n")
+    assert_one_line(caught.value, "a.dat")

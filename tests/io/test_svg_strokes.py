@@ -146,3 +146,24 @@ def test_a_handle_that_rounding_made_is_none(tmp_path: Path, steps: str) -> None
     text = f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='330 -465 15 15'>{path}</svg>"
     (tmp_path / "handle.svg").write_text(text)
     assert wrong_pixels(text, ss.read(tmp_path / "handle.svg", stroke="outline"), strokes=True) == 0
+
+
+@pytest.mark.parametrize("width", ["0", "0px", "0mm", "0%"])
+def test_a_stroke_of_no_width_covers_nothing(tmp_path: Path, width: str) -> None:
+    body = f"<path stroke-width='{width}' d='M20 20H80'/><path d='M20 50H40'/>"
+    path, text = drawing(tmp_path, body, "butt")
+    shape = ss.read(path, stroke="outline")
+    assert wrong_pixels(text, shape, strokes=True) == 0
+    assert shape.box == pytest.approx((20.0, 45.0, 40.0, 55.0))
+
+
+def test_a_mirrored_stroke_has_its_inside_inside(tmp_path: Path) -> None:
+    body = "<path transform='matrix(-1 .2 0 1 100 0)' d='M20 20H60V50M30 70h20v20h-20z'/>"
+    path, text = drawing(tmp_path, body, "round")
+    assert wrong_pixels(text, ss.read(path, stroke="outline"), strokes=True) == 0
+
+
+def test_a_stroke_with_a_cusp_is_refused_by_its_name(tmp_path: Path) -> None:
+    path, _ = drawing(tmp_path, "<path id='beak' d='M20 20C80 80 20 80 80 20'/>", "butt")
+    with pytest.raises(ss.InputError, match=r"<path id='beak'>: expected a line whose stroke has"):
+        ss.read(path, stroke="outline")
