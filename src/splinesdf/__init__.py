@@ -1,5 +1,6 @@
 """Closed curves to a compact C¹ piecewise-quadratic signed distance function."""
 
+from splinesdf import plot
 from splinesdf.contours.biarcs import as_arcs
 from splinesdf.contours.contour import Contour
 from splinesdf.distance.exact import (
@@ -19,6 +20,7 @@ from splinesdf.errors import (
 from splinesdf.fits.fit import FitResult, fit
 from splinesdf.fits.interpolation import interpolate
 from splinesdf.ground.limits import Limits
+from splinesdf.ground.progress import Progress
 from splinesdf.io.input import example, read, read_all
 from splinesdf.io.output import write
 from splinesdf.io.writers.options import Milling
@@ -28,8 +30,9 @@ from splinesdf.rasters.atlas import atlas
 from splinesdf.rasters.layout import Atlas
 from splinesdf.rasters.texture import Texture, texture
 from splinesdf.shapes.shape import Shape
+from splinesdf.splines.loading import load
 from splinesdf.splines.samples import from_level_set
-from splinesdf.splines.spline import SplineSDF, load
+from splinesdf.splines.spline import SplineSDF
 from splinesdf.splines.triangles import Triangles
 
 __version__ = "0.1.0"
@@ -43,6 +46,7 @@ __all__ = [
     "Milling",
     "MissingExtraError",
     "OpenContourError",
+    "Progress",
     "Projection",
     "Shape",
     "SplineSDF",
@@ -59,6 +63,7 @@ __all__ = [
     "interpolate",
     "load",
     "offset",
+    "plot",
     "project",
     "read",
     "read_all",

@@ -81,5 +81,5 @@ def test_view_serves_until_interrupted(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert errors.strip() == "ended"
+    assert errors.split("\n")[-3:] == ["Ctrl+C ends it.", "ended", ""]
     assert list(tmp_path.iterdir()) == []

@@ -22,6 +22,7 @@ from splinesdf.contours.contour import (
     to_origin,
     unit,
 )
+from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, positive
 
 # Arcs that meet at less than this angle (radians) are joined smoothly, to which the biarcs hold
@@ -64,6 +65,8 @@ def as_arcs(contour: Contour, *, tolerance: float) -> Contour:
     ----------
     [Bolton1975] Biarc curves, Computer-Aided Design 7 (2), 89-92: the biarc of equal legs.
     """
+    if not isinstance(contour, Contour):
+        raise InputError(f"expected a Contour, got {type(contour).__name__}: give them one by one")
     check_tolerance(tolerance, contour.arcs)
     grain = rounding(contour.arcs)
     contour = unfolded(contour)
