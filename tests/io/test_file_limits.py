@@ -17,6 +17,7 @@ import zlib
 from itertools import combinations, pairwise
 from pathlib import Path
 
+import brotli
 import pytest
 import shapely
 
@@ -292,6 +293,19 @@ def _packed_font(size: int) -> bytes:
 def test_a_packed_font_that_is_too_large(tmp_path: Path, name: str) -> None:
     content, tight = (FONTS / name).read_bytes(), ss.Limits(expanded=10_000)
     _refused(tmp_path / name, content, "up to 10,000 bytes of a font", text="A", limits=tight)
+
+
+def test_a_packed_font_is_unpacked_in_parts_up_to_the_limit(tmp_path: Path) -> None:
+    """Three million zeros in a few bytes; and bytes that are not packed."""
+    file = tmp_path / "a.woff2"
+    for packed, expected in (
+        (brotli.compress(bytes(3_000_000)), r"up to 2,000,000 bytes of a font"),
+        (b"not packed by brotli", "expected a font, got one that cannot be read"),
+    ):
+        header = b"wOF2" + bytes(16) + len(packed).to_bytes(4, "big") + bytes(24)
+        file.write_bytes(header + packed)
+        with pytest.raises(ss.InputError, match=expected):
+            ss.read(file, text="A", limits=ss.Limits(expanded=2_000_000))
 
 
 def test_glyphs_within_glyphs_are_counted(tmp_path: Path) -> None:
