@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from splinesdf.errors import InputError, MissingExtraError
+from splinesdf.errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -37,9 +37,8 @@ def write_on_any_terminal() -> None:
             stream.reconfigure(errors="splinesdf")
 
 
-def _in_ascii(error: UnicodeError) -> tuple[str | bytes, int]:
-    if not isinstance(error, UnicodeEncodeError):
-        raise error
+def _in_ascii(error: Any) -> tuple[str, int]:
+    """What to write in place of the signs of a `UnicodeEncodeError`, and where to go on."""
     signs = error.object[error.start : error.end]
     return signs.translate(_IN_ASCII).encode("ascii", "backslashreplace").decode(), error.end
 
@@ -143,10 +142,6 @@ def plain(text: str, style: str = "") -> Text:
 
 def console(*, stderr: bool = False) -> Console:
     """What tables and spinners are printed on."""
-    try:
-        from rich.console import Console
-    except ImportError as error:
-        raise MissingExtraError(
-            'the command line needs rich: python -m pip install "splinesdf[cli]"'
-        ) from error
+    from rich.console import Console
+
     return Console(stderr=stderr)

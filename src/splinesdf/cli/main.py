@@ -9,9 +9,13 @@ import splinesdf as ss
 
 try:
     import click
+    import rich  # noqa: F401, no more of it than that it is there: what is used is loaded then
 except ImportError:
-    # This is the whole program's first import of it, so there is nothing else to be saved.
-    print('splinesdf: the command line needs: python -m pip install "splinesdf[cli]"')
+    # This is the whole program's first import of them, so there is nothing else to be saved.
+    print(
+        'splinesdf: the command line needs: python -m pip install "splinesdf[cli]"',
+        file=sys.stderr,
+    )
     raise SystemExit(2) from None
 
 from splinesdf.cli.atlas import atlas
