@@ -69,6 +69,8 @@ _NAMES = (
     "location",
     "limits",
 )
+# What those are called on the command line that are not called so.
+_CALLED = {"layers": "layer", "ids": "id", "location": "axis"}
 
 
 def reading_options(command: Command) -> Command:
@@ -141,6 +143,19 @@ def holds_fit(path: str) -> bool:
     """Whether a file is a saved fit: by its ending, .json by what is in it."""
     suffix = Path(path).suffix.lower()
     return suffix == ".npz" or (suffix == ".json" and is_fit(Path(path)))
+
+
+def load_fit(path: str, reading: Mapping[str, Any]) -> ss.SplineSDF:
+    """A saved fit, of which options of reading but limits say nothing: those are refused."""
+    for name, value in reading.items():
+        if name == "limits" or value is None or value is False or value == ():
+            continue
+        option = "--" + _CALLED.get(name, name).replace("_", "-")
+        raise ss.InputError(
+            f"expected a shape for {option}, got a saved fit, {path!r:.200}: leave it out, or give "
+            "the file that the fit was made of"
+        )
+    return ss.load(path, limits=reading["limits"])
 
 
 def check_outputs(source: str, *outputs: str | None) -> None:
