@@ -17,8 +17,6 @@ MODULES = [
     for module in pkgutil.walk_packages(ss.__path__, "splinesdf.")
     if module.name != "splinesdf.__main__"
 ]
-# What an example may call of a class is asked of the class: its methods as a whole.
-CLASSES = [ss.Shape, ss.SplineSDF, ss.Contour, ss.Texture, ss.Atlas]
 
 
 @pytest.mark.parametrize("name", ss.__all__)

@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 import splinesdf as ss
 from splinesdf import plot
@@ -170,6 +171,15 @@ def test_the_surface_has_the_values_of_the_spline() -> None:
     figure.savefig(io.BytesIO(), format="png")
 
 
+@pytest.mark.parametrize("y_down", [False, True])
+def test_surfaces_are_seen_from_where_drawings_are(y_down: bool) -> None:
+    """A small y is behind in a drawing whose y points down, and in front in all others."""
+    axes = plot.new_figure(4, 4).add_subplot(projection="3d")
+    plot.plot_surface(ss.fit(framed(y_down=y_down), tolerance=0.5).spline, axes)
+    low, high = (proj_transform(2.0, y, 0.0, axes.get_proj())[1] for y in (0.0, 4.0))
+    assert (low > high) == y_down
+
+
 def test_offsets_are_in_the_color_of_their_side_and_named(ax: Axes) -> None:
     spline = fitted().spline
     contours = [c for level in (-0.05, 0.05) for c in spline.contours(level)]
@@ -247,6 +257,16 @@ def test_many_offsets_are_named_by_their_range(ax: Axes) -> None:
     plot.plot_offsets(gamma("gamma2"), contours, ax)
     texts = [text.get_text() for text in ax.get_legend().get_texts()]
     assert texts == ["−0.1 to −0.05", "0", "+0.05 to +0.15"]
+
+
+def test_many_offsets_on_one_side_have_one_name(ax: Axes) -> None:
+    levels = (0.02, 0.05, 0.1, 0.12, 0.15, 0.2)
+    contours = [c for level in levels for c in fitted().spline.contours(level)]
+    plot.plot_offsets(gamma("gamma2"), contours, ax)
+    (text,) = ax.get_legend().get_texts()
+    assert text.get_text() == "+0.02 to +0.2"
+    (line,) = ax.get_legend().get_lines()
+    assert to_rgb(line.get_color()) == to_rgb(plot.OUTSIDE)
 
 
 def test_no_offsets_are_no_error(ax: Axes) -> None:

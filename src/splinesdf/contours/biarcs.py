@@ -118,12 +118,10 @@ def arc_elements(contour: Contour, *, tolerance: float) -> list[Element]:
     # The arcs were rounded once more, which tells on those of a few roundings: they are found
     # with twice the grain, and what even then is neither line nor circle is no wider than that.
     for piece in elements(arcs, 2.0 * rounding(arcs.arcs)):
-        if piece.kind not in (Kind.LINE, Kind.CIRCLE):
-            result.append(Element(Kind.LINE, piece.first, piece.count, piece.start, piece.end))
-        elif piece.is_flat(allowed):
-            result += piece.chords(allowed)
+        if piece.kind is Kind.CIRCLE:
+            result += piece.chords(allowed) if piece.is_flat(allowed) else [piece]
         else:
-            result.append(piece)
+            result.append(Element(Kind.LINE, piece.first, piece.count, piece.start, piece.end))
     return result
 
 

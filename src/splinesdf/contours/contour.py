@@ -21,15 +21,12 @@ from splinesdf.ground.arrays import (
 )
 from splinesdf.ground.brief import brief, counted
 from splinesdf.ground.card import Picture, card
-from splinesdf.ground.doors import public
+from splinesdf.ground.doors import above, public
 from splinesdf.ground.values import by_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# A halving divides the sag of an arc by four, or by nearly two next to a cusp: so many are far more
-# than any tolerance above rounding takes. More change nothing; fewer would leave an arc coarse.
-_HALVINGS = 120
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
 # subdivision would go on splitting rounding noise.
 _ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
@@ -186,10 +183,9 @@ class Contour:
         allowed = self._tolerance(tolerance)
         arcs, origin = to_origin(self.arcs)
         weights = self.weights
-        for _ in range(_HALVINGS):
-            coarse = _sag(arcs, weights) > allowed
-            if not coarse.any():
-                break
+        # Halving divides the sag by four, or by nearly two next to a cusp: it soon is below any
+        # tolerance above rounding.
+        while (coarse := _sag(arcs, weights) > allowed).any():
             arcs, weights = halve(arcs, weights, coarse)
         return np.concatenate([arcs[:, 0], arcs[-1:, 2]]) + origin
 
@@ -217,7 +213,7 @@ class Contour:
         tolerance : float, optional
             Of hyperbolas, which become cubics: as that of `points`.
         """
-        data: str = public("io").writers.svg.path_data(self, self._tolerance(tolerance))
+        data: str = above("io.writers.svg").path_data(self, self._tolerance(tolerance))
         return data
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -315,8 +311,7 @@ def halve(arcs: Floats, weights: Floats, which: np.ndarray) -> tuple[Floats, Flo
 def evened(arcs: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """The arcs, halved until each turns little and its speed is nearly even, down to rounding."""
     negligible = _ROUNDING * np.abs(arcs).max()
-    # 60 halvings shrink any arc below rounding: a limit for cusps, which never flatten.
-    for _ in range(60):
+    while True:  # cusps never flatten, but soon are below rounding
         early, late, chords = (
             np.linalg.norm(arcs[:, j] - arcs[:, i], axis=1) for i, j in ((0, 1), (1, 2), (0, 2))
         )
@@ -325,9 +320,8 @@ def evened(arcs: Floats, weights: Floats) -> tuple[Floats, Floats]:
         curved = _sag(arcs, weights) > _EVEN_SAG * chords
         rough = (uneven | curved) & (early + late > negligible)
         if not rough.any():
-            break
+            return arcs, weights
         arcs, weights = halve(arcs, weights, rough)
-    return arcs, weights
 
 
 def box(contours: Iterable[Contour]) -> tuple[float, float, float, float]:

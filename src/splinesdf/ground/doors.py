@@ -13,3 +13,8 @@ def public(name: str) -> Any:
     it in methods that only hand over, never for something that a lower floor needs by itself.
     """
     return getattr(importlib.import_module("splinesdf"), name)
+
+
+def above(module: str) -> Any:
+    """A module of the package on a higher floor, by its name within the package; as `public`."""
+    return importlib.import_module(f"splinesdf.{module}")

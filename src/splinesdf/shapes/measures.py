@@ -32,12 +32,17 @@ def area(boundary: Arclets) -> float:
 
 
 def length(boundary: Arclets) -> float:
-    """The length of all arcs, by Gauss's rule on halves until it settles; to rounding."""
-    count, order = boundary.power.shape[:2]
-    derivatives = boundary.power[:, 1:] * np.arange(1, order)[None, :, None]
-    arc, low, high = np.arange(count), np.zeros(count), np.ones(count)
+    """The length of all arcs, by Gauss's rule on halves until it settles; to rounding.
+
+    Straight ones are their chords.
+    """
+    straight = ~np.any(boundary.power[:, 2:], axis=(1, 2))
+    chords = np.hypot(*(boundary.end - boundary.start)[straight].T)
+    power = boundary.power[~straight]
+    derivatives = power[:, 1:] * np.arange(1, power.shape[1])[None, :, None]
+    arc, low, high = np.arange(len(power)), np.zeros(len(power)), np.ones(len(power))
     whole = _lengths(derivatives, low, high)
-    enough, settled = _SAME * float(whole.sum()), []
+    enough, settled = _SAME * float(whole.sum() + chords.sum()), chords.tolist()
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         first, second = (

@@ -31,7 +31,6 @@ from splinesdf.splines.archive import (
     Archive,
     archive_dict,
     archive_from,
-    read_archive,
     write_archive,
 )
 from splinesdf.splines.border import border_of, extend_lattice
@@ -384,17 +383,3 @@ class SplineSDF:
 def _check_outside(outside: str) -> None:
     if outside not in ("extend", "nan"):
         raise InputError(f"expected outside 'extend' or 'nan', got {outside!r:.60}")
-
-
-def load(path: str | os.PathLike[str]) -> SplineSDF:
-    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one.
-
-    Examples
-    --------
-    >>> import splinesdf as ss
-    >>> sdf = ss.fit(ss.example("gamma1"), tolerance=0.05).spline
-    >>> sdf.save("gamma1.json")
-    >>> bool(ss.load("gamma1.json")((0.3, 0.4)) == sdf((0.3, 0.4)))
-    True
-    """
-    return SplineSDF(*read_archive(path))
