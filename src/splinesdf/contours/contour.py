@@ -82,6 +82,11 @@ class Contour:
     <Contour: at 1, 8 arcs, closed>
     >>> round(outer.length, 6), round(outer.area, 6)  # 16 + 2 pi, 32 + pi
     (22.283185, 35.141593)
+    >>> len(outer.points(tolerance=0.1)) > len(outer.points(tolerance=1.0))
+    True
+    >>> outer.svg_path().startswith("M")
+    True
+    >>> axes = outer.plot()
     """
 
     arcs: Floats

@@ -75,8 +75,9 @@ class FitResult:
     >>> result = ss.fit(ss.example("gamma1"), tolerance=0.01)
     >>> result.error <= result.bound <= 0.01, result.stopped
     (True, 'reached')
-    >>> float(result.spline((0.5, 0.5))) < 0.0
+    >>> float(result((0.5, 0.5))) < 0.0
     True
+    >>> axes = result.plot()
     """
 
     spline: SplineSDF

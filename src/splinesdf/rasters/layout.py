@@ -101,6 +101,8 @@ class Atlas:
     ['square', 'disk']
     >>> icons.pixels().dtype
     dtype('uint8')
+    >>> icons.save("icons.png").name
+    'icons.json'
     """
 
     values: Floats

@@ -75,6 +75,8 @@ class Texture:
     ((1.0, 1.0), [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0])
     >>> picture.values[3].round(6).tolist()[2:]
     [-1.0, -2.0, -1.0, 0.0, 1.0]
+    >>> picture.pixels()[3].tolist()
+    [0, 128, 255, 255, 255, 128, 0]
     >>> picture.save("square.npy")
     """
 

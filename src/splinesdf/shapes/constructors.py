@@ -84,6 +84,13 @@ def from_formulas(
         If the sections do not follow one another, or the curve does not end where it starts.
     InputError
         If a formula cannot be used; the message names the section.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> half = ss.Shape.from_formulas([("cos(t)", "sin(t)", (0, "pi")), ("t", "0", (-1, 1))])
+    >>> round(half.area, 9)  # pi / 2
+    1.570796327
     """
     return cls.from_pieces([compile_sections(sections)], fill=fill, close=close, name=name)
 
@@ -126,6 +133,13 @@ def from_nurbs(
         If the curve does not end where it starts.
     InputError
         If the numbers do not make a curve.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = [[1, 0], [0, 1], [-1, 0], [0, -1]]
+    >>> ss.Shape.from_nurbs(square, degree=3, periodic=True)
+    <Shape: 1 loop, 4 pieces, nonzero>
     """
     pieces = nurbs_pieces(control, degree=degree, knots=knots, weights=weights, periodic=periodic)
     return cls.from_pieces([pieces], fill=fill, close=close, name=name)
@@ -179,6 +193,12 @@ def from_shapely(cls: type[Shape], geometry: object, *, name: str = "") -> Shape
     """The union of all polygons of a geometry of Shapely, or of its like.
 
     It is a GeoJSON object or has a ``__geo_interface__``; points and lines are left out.
+
+    Examples
+    --------
+    >>> import shapely, splinesdf as ss
+    >>> ss.Shape.from_shapely(shapely.box(0, 0, 4, 3).difference(shapely.box(1, 1, 2, 2)))
+    <Shape: 2 loops, 8 pieces, evenodd>
     """
     found = polygons_of(geometry)
     (loops, fill), notes = found.united(None), found.notes()

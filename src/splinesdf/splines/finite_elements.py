@@ -26,6 +26,13 @@ def to_skfem(spline: SplineSDF) -> tuple[Any, Floats]:
         As `triangles`.
     MissingExtraError
         Without scikit-fem.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> basis, vector = ss.fit(ss.example("gamma1"), tolerance=0.05).spline.to_skfem()
+    >>> len(vector) == int(basis.N)
+    True
     """
     return skfem_basis(spline.triangles())
 

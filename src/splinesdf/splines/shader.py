@@ -118,6 +118,13 @@ def to_glsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float
         If the spline is cubic, GLSL does not take the name, a texture of 2048 x 2048 does not hold
         the numbers, or the domain is so far from the origin that float32 does not tell places in
         it apart.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> code, table = ss.fit(ss.example("gamma1"), tolerance=0.05).spline.to_glsl("away")
+    >>> "float away(vec2 p)" in code, table.shape
+    (True, (1, 2048, 4))
     """
     check_name(name)
     if spline.element.degree != 2:

@@ -98,12 +98,19 @@ class SplineSDF:
     >>> points = [[0.5, 0.0], [0.0, 2.0]]
     >>> sdf(points).round(1).tolist(), sdf.inside(points).tolist()
     ([-0.5, 1.0], [True, False])
-    >>> sdf.gradient(points).shape, sdf.hessian(points).shape
-    ((2, 2), (2, 2, 2))
+    >>> values, gradients = sdf.value_and_gradient(points)
+    >>> bool((gradients == sdf.gradient(points)).all())
+    True
+    >>> sdf.normal(points).round(1).tolist(), sdf.closest_point(points).round(1)[0].tolist()
+    ([[1.0, 0.0], [0.0, 1.0]], [1.0, 0.0])
+    >>> sdf.hessian(points).shape, sdf.curvature(points).shape
+    ((2, 2, 2), (2,))
     >>> len(sdf.contours(0.0)), sdf.grid(5, 4).distance.shape
     (1, (4, 5))
-    >>> code, table = sdf.to_glsl("disk")
+    >>> axes = sdf.plot()
     >>> sdf.save("disk.npz")
+    >>> ss.SplineSDF.from_dict(sdf.to_dict()) == sdf
+    True
     """
 
     mesh: Mesh
@@ -295,6 +302,12 @@ class SplineSDF:
         ------
         InputError
             If the spline is cubic, not finite, or not continuous (fits are).
+
+        Examples
+        --------
+        >>> import splinesdf as ss
+        >>> ss.interpolate(ss.example("gamma1"), (4, 4)).spline.triangles()
+        <Triangles: 64 triangles, 145 nodes>
         """
         return quadratic_triangles(self.mesh, self.element, self.ordinates)
 
