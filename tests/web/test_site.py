@@ -59,7 +59,7 @@ def test_the_page_to_explore_is_small_and_works(open_page: Open) -> None:
     pixels = np.random.default_rng(2).integers(
         0, (int(view["width"]), int(view["height"])), (500, 2)
     )
-    found = np.array(shown.ask("values", pixels.tolist(), "canvas"), dtype=float)
+    found = np.array(shown.ask("values", pixels.tolist(), None), dtype=float)
     points = shown.points(view, pixels)
     low, high = np.reshape(spline.domain, (2, 2))
     inside = np.all((points > low) & (points < high), axis=1)
