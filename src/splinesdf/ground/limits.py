@@ -20,8 +20,8 @@ from splinesdf.ground.arrays import whole
 
 # Of geometries within geometries. More: Python's own calls, 1000 deep, run out.
 _DEEPEST = 300
-# Of any other. More: it has no 64-bit number in kernels; fewer: files that a large machine has memory
-# for could not be read.
+# Of any other. More: kernels have no 64-bit number for it; fewer: files that a large machine has
+# memory for could not be read.
 _LARGEST = 2**53
 
 

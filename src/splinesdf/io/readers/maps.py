@@ -106,7 +106,7 @@ def _geometry(tokens: list[str], at: int, found: Polygons, depth: int) -> int:
 
 
 def _nested(tokens: list[str], at: int) -> tuple[list[Any], int]:
-    """Lists within brackets, numbers without commas between them as one point; EMPTY is no entry."""
+    """Lists within brackets, EMPTY left out; numbers without commas between them are one point."""
     at = _expect(tokens, at, "(")
     stack: list[list[Any]] = [[]]
     point: list[float] = []
