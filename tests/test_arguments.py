@@ -51,12 +51,16 @@ def contour() -> ss.Contour:
 KINDS: dict[str, str] = {
     **dict.fromkeys(("tolerance", "step", "max_distance", "min_side", "level", "beyond"), "number"),
     **dict.fromkeys(("gap", "unit", "size", "range", "em", "scale"), "number"),
+    **dict.fromkeys(("dx", "dy", "degrees", "radius"), "number"),
+    **dict.fromkeys(("xmin", "ymin", "xmax", "ymax"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
     **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
-    **dict.fromkeys(("points", "distances", "control", "knots", "weights", "levels"), "array"),
+    **dict.fromkeys(
+        ("points", "distances", "control", "knots", "weights", "levels", "shell"), "array"
+    ),
     **dict.fromkeys(("boxes", "ordinates", "arcs_", "x_", "y_", "values"), "array"),
-    **dict.fromkeys(("domain", "band", "t", "page", "origin"), "numbers"),
+    **dict.fromkeys(("domain", "band", "t", "page", "origin", "about", "center"), "numbers"),
     "start": "numbers",
     **dict.fromkeys(
         (
@@ -68,6 +72,7 @@ KINDS: dict[str, str] = {
             *("y_down", "notes", "loops", "sections", "x", "y", "mesh", "made", "closed", "parent"),
             *("function", "starts", "split", "columns", "rows", "spline", "ax", "result", "filled"),
             *("spline_or_mesh", "figure", "curve", "source", "characters"),
+            *("progress", "holes", "other", "options", "factor"),
         ),
         "other",
     ),
@@ -126,6 +131,9 @@ GOOD: dict[str, Any] = {
     "max_steps": 3,
     "size": 9,
     "range": 1.0,
+    **{"dx": 1.0, "dy": 2.0, "degrees": 30.0, "radius": 1.5, "factor": 2.0, "about": (1.0, 2.0)},
+    **{"xmin": 0.0, "ymin": 0.0, "xmax": 2.0, "ymax": 3.0, "center": (1.0, 2.0)},
+    "shell": CORNERS,
 }
 # Good values that differ from one function to another.
 GOOD_IN: dict[tuple[str, str], Any] = {
@@ -149,6 +157,7 @@ def good(where: str, name: str) -> Any:
         return GOOD_IN[where, name]
     made: dict[str, Callable[[], Any]] = {
         "shape": shape,
+        "other": shape,
         "source": shape,
         "mesh": lambda: Grid.uniform(UNIT, 3, 4),
         "contour": contour,
@@ -220,7 +229,9 @@ def call(where: str, changed: dict[str, Any]) -> Any:
     function = dict(offered())[where]
     arguments = dict(changed)
     for name, parameter in inspect.signature(function).parameters.items():
-        needed = parameter.default is parameter.empty or (where, name) == ("offset", "distances")
+        if parameter.kind is parameter.VAR_KEYWORD:
+            continue
+        needed = parameter.default is parameter.empty or name == "distances"
         if needed and name not in arguments and not (name == "distances" and "step" in arguments):
             arguments[name] = good(where, name)
     answer = function(**arguments)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.meshes import Grid, Quadtree
 
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
 
@@ -130,3 +131,21 @@ def test_a_saved_fit_with_too_many_roots(
     np.savez(bad, **(fields | {"ordinates": 1e308 * np.ones_like(fields["ordinates"])}))  # type: ignore[arg-type]
     with pytest.raises(ss.InputError, match="up to 1e\\+100"):
         ss.load(bad)
+
+
+@pytest.mark.parametrize("kind", [Grid, Quadtree])
+def test_more_cells_than_there_can_be_are_refused(kind: type[Grid] | type[Quadtree]) -> None:
+    """Each way there could be as many; before there is room made for them."""
+    with pytest.raises(ss.InputError, match=r"expected at most [\d,]+ cells, got 60000 x 70000$"):
+        kind.uniform((0.0, 0.0, 1.0, 1.0), 60_000, 70_000)
+
+
+@pytest.mark.parametrize("side", [1.0, 3.0, 1e-3])
+@pytest.mark.parametrize("most", [1, 2, 3, 8, 9])
+def test_the_cells_to_start_from_are_no_more_than_allowed(side: float, most: int) -> None:
+    """The most that divide the longer side in up to four, down to a single one."""
+    domain = (-1.0, -1.0, 2.0, -1.0 + side)
+    result = ss.fit(ss.Shape.from_points(TRIANGLE), tolerance=9.0, domain=domain, max_cells=most)
+    m, n = result.spline.mesh.shape  # type: ignore[attr-defined]
+    fine = [k for k in range(1, 5) if k * max(1, round(k * side / 3.0)) <= most]
+    assert (m, n) == (max(fine), max(1, round(max(fine) * side / 3.0)))

@@ -1,36 +1,45 @@
 """Closed curves to a compact C¹ piecewise-quadratic signed distance function."""
 
-from splinesdf.contours.biarcs import as_arcs
-from splinesdf.contours.contour import Contour
-from splinesdf.distance.exact import (
-    Projection,
-    closest_point,
-    project,
-    signed_distance,
-    signed_distance_grid,
-)
-from splinesdf.errors import (
-    InputError,
-    MissingExtraError,
-    OpenContourError,
-    SplineSDFError,
-    ToleranceNotReached,
-)
-from splinesdf.fits.fit import FitResult, fit
-from splinesdf.fits.interpolation import interpolate
-from splinesdf.ground.limits import Limits
-from splinesdf.io.input import example, read, read_all
-from splinesdf.io.output import write
-from splinesdf.io.writers.options import Milling
-from splinesdf.meshes.lattice import DistanceGrid
-from splinesdf.offsets.offset import offset
-from splinesdf.rasters.atlas import atlas
-from splinesdf.rasters.layout import Atlas
-from splinesdf.rasters.texture import Texture, texture
-from splinesdf.shapes.shape import Shape
-from splinesdf.splines.samples import from_level_set
-from splinesdf.splines.spline import SplineSDF, load
-from splinesdf.splines.triangles import Triangles
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from splinesdf import plot
+    from splinesdf.contours.biarcs import as_arcs
+    from splinesdf.contours.contour import Contour
+    from splinesdf.distance.exact import (
+        Projection,
+        closest_point,
+        project,
+        signed_distance,
+        signed_distance_grid,
+    )
+    from splinesdf.errors import (
+        InputError,
+        MissingExtraError,
+        OpenContourError,
+        SplineSDFError,
+        ToleranceNotReached,
+    )
+    from splinesdf.fits.fit import FitResult, fit
+    from splinesdf.fits.interpolation import interpolate
+    from splinesdf.ground.limits import Limits
+    from splinesdf.ground.progress import Progress
+    from splinesdf.io.input import example, read, read_all
+    from splinesdf.io.output import write
+    from splinesdf.io.writers.options import Milling
+    from splinesdf.meshes.lattice import DistanceGrid
+    from splinesdf.offsets.offset import offset
+    from splinesdf.rasters.atlas import atlas
+    from splinesdf.rasters.layout import Atlas
+    from splinesdf.rasters.texture import Texture, texture
+    from splinesdf.shapes.shape import Shape
+    from splinesdf.splines.loading import load
+    from splinesdf.splines.samples import from_level_set
+    from splinesdf.splines.spline import SplineSDF
+    from splinesdf.splines.triangles import Triangles
 
 __version__ = "0.1.0"
 __all__ = [
@@ -43,6 +52,7 @@ __all__ = [
     "Milling",
     "MissingExtraError",
     "OpenContourError",
+    "Progress",
     "Projection",
     "Shape",
     "SplineSDF",
@@ -59,6 +69,7 @@ __all__ = [
     "interpolate",
     "load",
     "offset",
+    "plot",
     "project",
     "read",
     "read_all",
@@ -67,3 +78,67 @@ __all__ = [
     "texture",
     "write",
 ]
+
+# Where each name is. It is imported when it is first asked for: all of them take three times as
+# long as NumPy, and most programs need a few. Editors and type checkers read the imports above.
+_MODULES = {
+    "contours.biarcs": ("as_arcs",),
+    "contours.contour": ("Contour",),
+    "distance.exact": (
+        "Projection",
+        "closest_point",
+        "project",
+        "signed_distance",
+        "signed_distance_grid",
+    ),
+    "errors": (
+        "InputError",
+        "MissingExtraError",
+        "OpenContourError",
+        "SplineSDFError",
+        "ToleranceNotReached",
+    ),
+    "fits.fit": (
+        "FitResult",
+        "fit",
+    ),
+    "fits.interpolation": ("interpolate",),
+    "ground.limits": ("Limits",),
+    "ground.progress": ("Progress",),
+    "io.input": (
+        "example",
+        "read",
+        "read_all",
+    ),
+    "io.output": ("write",),
+    "io.writers.options": ("Milling",),
+    "meshes.lattice": ("DistanceGrid",),
+    "offsets.offset": ("offset",),
+    "rasters.atlas": ("atlas",),
+    "rasters.layout": ("Atlas",),
+    "rasters.texture": (
+        "Texture",
+        "texture",
+    ),
+    "shapes.shape": ("Shape",),
+    "splines.loading": ("load",),
+    "splines.samples": ("from_level_set",),
+    "splines.spline": ("SplineSDF",),
+    "splines.triangles": ("Triangles",),
+}
+_HOME = {name: module for module, names in _MODULES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        found = getattr(importlib.import_module(f"splinesdf.{_HOME[name]}"), name)
+    elif name == "plot":
+        found = importlib.import_module("splinesdf.plot")
+    else:
+        raise AttributeError(f"module 'splinesdf' has no attribute {name!r}")
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

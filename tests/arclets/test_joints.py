@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.arclets.tangents import EndTangents, led_on
+from splinesdf.arclets.vertices import vertices
 
 
 def sliver() -> np.ndarray:
@@ -37,3 +39,31 @@ def test_a_sliver_turns_once_to_its_own_side(hole: bool, reverse: bool) -> None:
     # Both tips are there, and point where the loop turns.
     tips = joints.turn[np.abs(joints.turn) > 3.0]
     assert tips.tolist() == pytest.approx([exact[0] * math.pi] * 2, abs=1e-2)
+
+
+def test_arclets_without_extent_point_where_their_followers_do() -> None:
+    """Two in a row, one alone that only ends in a point, and a loop of nothing else."""
+    vectors = np.array(
+        [(1.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 2.0), (3.0, 3.0), (0.0, 0.0), (0.0, 0.0)]
+    )
+    arriving = vectors.copy()
+    arriving[4] = 0.0
+    following = np.array([1, 2, 3, 4, 0, 6, 5])
+    found = led_on(EndTangents(vectors, arriving), following)
+    assert found.leaving.tolist() == [
+        [1.0, 0.0], [0.0, 2.0], [0.0, 2.0], [0.0, 2.0], [1.0, 0.0], [0.0, 0.0], [0.0, 0.0]
+    ]  # fmt: skip
+    assert np.array_equal(found.arriving, found.leaving)
+
+
+def test_a_vertex_that_rounding_took_a_branch_from_is_none() -> None:
+    """Three triangles that share a corner: as one vertex, its branches around it."""
+    fans = "M0 0L4 -1L4 1Z M0 0L-1 4L-3 4Z M0 0L-3 -4L-1 -4Z"
+    boundary = ss.Shape.from_svg_path(fans).boundary
+    found = vertices(boundary)
+    assert len(found.ends) == 3
+    assert sorted(found.inside) == sorted(found.outside)
+    assert not (found.inside == found.outside).any()
+    end = boundary.end.copy()
+    end[found.ends[0]] += 1e-9
+    assert len(vertices(boundary._replace(end=end)).ends) == 0

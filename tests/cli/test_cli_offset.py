@@ -70,7 +70,12 @@ def test_check_finds_the_top_of_a_bump(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("damage", "says"), [("move", "NOT within the tolerance"), ("drop", "expected curves")]
+    ("damage", "says"),
+    [
+        ("move", "NOT within the tolerance"),
+        ("drop", "expected curves"),
+        ("point", "expected curves with an extent, got 1 that are points"),
+    ],
 )
 def test_a_damaged_file_has_status_1(
     run: Run, monkeypatch: pytest.MonkeyPatch, damage: str, says: str
@@ -83,8 +88,10 @@ def test_a_damaged_file_has_status_1(
             text = re.sub(
                 r"(\n0,0\.02,)([-.\d]+)", lambda m: f"{m[1]}{float(m[2]) + 0.01}", text, count=1
             )
-        else:
+        elif damage == "drop":
             text = text[: text.index("\n1,") + 1]
+        else:
+            text += 3 * "2,0.02,1.5,0.5\n"
         Path(path).write_text(text)
 
     monkeypatch.setattr("splinesdf.cli.offset.write_text", damaged)
@@ -93,6 +100,13 @@ def test_a_damaged_file_has_status_1(
     assert status == 1
     assert says in out + err
     assert "Traceback" not in err
+
+
+def test_what_is_the_level_set_of_a_fit_is_said(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("splinesdf.offsets.offset.contours_at", lambda *_, **__: None)
+    status, _, err = run("plate.svg", "-d", "2", "--tolerance", "0.5", "-o", "a.svg")
+    assert status == 0
+    assert "note: at 2 the offset is the level set of a fit, within the tolerance, of" in err
 
 
 def test_options_reach_the_program(run: Run, tmp_path: Path) -> None:

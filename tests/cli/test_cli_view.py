@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from urllib.request import urlopen
 
 import pytest
 
+import splinesdf as ss
 from tests.cli.test_cli import Command, run
 
 __all__ = ["run"]
@@ -54,6 +56,44 @@ def test_view_refuses(run: Command, tmp_path: Path, arguments: tuple[str, ...], 
     assert not list(tmp_path.glob("page*"))
 
 
+def test_view_of_a_saved_fit_has_the_limits_that_are_given(run: Command, tmp_path: Path) -> None:
+    star = ss.Shape.from_points([(0, 0), (9, 9), (9, 0), (0, 9), (4, 12), (5, -3)])
+    ss.interpolate(star, (2, 2)).spline.save(tmp_path / "fit.npz")
+    done = run("view", "fit.npz", "--html", "page.html", "-d", "0.5", "--limit", "crossings=1")
+    assert done.status == 2
+    assert "up to 1 crossings" in done.err
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_view_opens_the_page_unless_told_not_to(
+    run: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Served:
+        def serve_forever(self) -> None:
+            raise KeyboardInterrupt
+
+        def server_close(self) -> None:
+            """Nothing is open."""
+
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    monkeypatch.setattr("splinesdf.web.server.make_server", lambda _: (Served(), "http://here/"))
+    for arguments in ((), ("--no-open",)):
+        done = run("view", "gamma1", "--tolerance", "0.1", *arguments)
+        assert done.status == 0
+        assert done.out == "http://here/\n"
+        assert "Ctrl+C ends it." in done.err
+        assert done.err.endswith("ended\n")
+    assert opened == ["http://here/"]
+
+
+def test_view_says_that_many_cells_take_long(run: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    arguments = ("view", "gamma1", "--tolerance", "0.1", "--html", "page.html")
+    assert "note:" not in run(*arguments).err
+    monkeypatch.setattr("splinesdf.cli.view._MANY", 3)
+    assert re.search(r"note: \d+ cells take a browser seconds to open", run(*arguments).err)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_view_serves_until_interrupted(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "splinesdf", "view", "gamma1", "--tolerance", "0.1"]
@@ -71,5 +111,5 @@ def test_view_serves_until_interrupted(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=60)
     assert process.returncode == 0
-    assert errors.strip() == "ended"
+    assert errors.split("\n")[-3:] == ["Ctrl+C ends it.", "ended", ""]
     assert list(tmp_path.iterdir()) == []

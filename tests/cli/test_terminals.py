@@ -15,6 +15,10 @@ import pytest
 import splinesdf as ss
 from splinesdf.cli.main import commands, main
 
+# How long it took, and of that how long to compile, which differs from run to run.
+_SECONDS = re.compile(
+    r"time\s+\S+\s+s(,\s+and\s+\S+\s+s\s+to\s+compile,\s+once)?|\"seconds(_compiling)?\": \S+"
+)
 COMMANDS: dict[str, tuple[str, ...]] = {
     "info": ("part",),
     "info of a fit": ("fit.npz",),
@@ -32,10 +36,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "atlas": ("drawings é", "-o", "é.png", "--size", "12.345678"),
     "view": ("é€.csv", "--html", "é.html", "--tolerance", "0.05"),
     "paper": ("--tables",),
-    "demo": (
-        "-o",
-        "hier é",
-    ),
+    "demo": ("-o", "hier é"),
+    "completion": ("bash",),
 }
 
 
@@ -121,7 +123,7 @@ def run(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
 
 def words_of(text: str) -> list[str]:
     """What is printed, but for lines and spaces, and the time that it took."""
-    return re.findall(r"[^\s│─╶╴╵╷]+", re.sub(r"time\s+\S+\s+s|\"seconds\": \S+", "", text))
+    return re.findall(r"[^\s│─╶╴╵╷]+", _SECONDS.sub("", text))
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -222,3 +222,8 @@ def test_the_same_biarcs_whichever_joint_is_the_origin(tolerance: float) -> None
         there = ss.as_arcs(replace(chain, arcs=arcs - way), tolerance=tolerance)
         assert len(there.arcs) == len(here.arcs)
         assert_allclose(there.arcs + way, here.arcs, rtol=0.0, atol=1e-11)
+
+
+def test_a_point_stays_one() -> None:
+    point = Contour(np.full((3, 3, 2), 3.0), np.array([1.0, 0.5, 2.0]))
+    assert ss.as_arcs(point, tolerance=1e-3).arcs.tolist() == [[[3.0, 3.0]] * 3]

@@ -8,7 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from splinesdf.contours.contour import Contour, box, evaluate, halve, mirrored
+from splinesdf.contours.contour import (
+    Contour,
+    box,
+    evaluate,
+    halve,
+    mirrored,
+    smallest_tolerance,
+)
 from splinesdf.errors import InputError
 from tests.chains import circle, mixed_chain
 
@@ -128,3 +135,18 @@ def distance_to_polyline(points: np.ndarray, line: np.ndarray) -> np.ndarray:
     squares = np.maximum(np.sum(steps**2, axis=1), 1e-300)
     along = np.clip(np.sum(apart * steps, axis=2) / squares, 0.0, 1.0)
     return np.linalg.norm(apart - along[..., None] * steps, axis=2).min(axis=1)
+
+
+@pytest.mark.parametrize("weight", [1e-59, 1e-9, 1.0, 1e9, 1e59])
+@pytest.mark.parametrize("middle", [(0.0, 0.0), (1.0, 0.0), (-3.0, 0.0), (1.0, 1e-9), (0.5, 1e6)])
+def test_halving_ends_at_rounding(weight: float, middle: tuple[float, float]) -> None:
+    """Arcs that turn back or all but reach their middle, to the smallest tolerance there is."""
+    arcs = np.array([[(0.0, 0.0), middle, (1.0, 0.0)]])
+    contour = Contour(arcs + np.array([100.0, 7.0]), np.array([weight]), closed=False)
+    least = smallest_tolerance(contour.arcs)
+    line = contour.points(least)
+    reach = evaluate(contour.arcs, contour.weights, np.linspace(0.0, 1.0, 99)).reshape(-1, 2)
+    assert distance_to_polyline(reach, line).max() <= 4.0 * least
+    # Lengths of the polyline grow to that of the arc.
+    length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
+    assert contour.length == pytest.approx(length, rel=1e-5, abs=1e-12)

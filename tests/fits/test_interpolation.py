@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import splinesdf as ss
 from splinesdf import plot
 from splinesdf.cli import report
+from splinesdf.cli.console import Took
 from splinesdf.fits.fit import require_reached
 from splinesdf.meshes import Grid
 from splinesdf.paper import tables as paper
@@ -193,9 +194,9 @@ def test_what_takes_a_fit_takes_it(tmp_path: Path, capsys: pytest.CaptureFixture
     assert (result.tolerance, result.stopped, result.bands) == (None, "given", ())
     (step,) = result.history
     assert (step.cells, step.error, step.centre_error) == (256, result.error, result.centre_error)
-    report.print_fit(result, shape, 1.0)
+    report.print_fit(result, shape, Took(1.0, 0.0))
     assert "none was asked for" in capsys.readouterr().out
-    assert report.fit_figures(result, shape, seconds=1.0)["tolerance"] is None
+    assert report.fit_figures(result, shape, Took(1.0, 0.0))["tolerance"] is None
     plot.save_figure(plot.overview(result, shape, result.spline.contours(0.0)), tmp_path / "a.png")
     result.spline.save(tmp_path / "a.npz")
     loaded = ss.load(tmp_path / "a.npz")

@@ -2,12 +2,14 @@
 
 import os
 import stat
+import time
 from pathlib import Path
 from typing import BinaryIO
 
 import pytest
 
 from splinesdf.errors import InputError
+from splinesdf.ground import atomic
 from splinesdf.ground.atomic import atomic_file, write_text
 
 
@@ -88,6 +90,19 @@ def test_a_folder_that_may_not_be_written(tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(InputError, match=r"permission denied$"):
         write_text(tmp_path / "a.txt", "x")
     assert names(tmp_path) == []
+
+
+def test_where_files_have_no_locks_old_ones_are_swept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on Windows, which deletes no file that is open."""
+    monkeypatch.setattr(atomic, "fcntl", None)
+    old, new = (tmp_path / f".splinesdf-{digit * 16}.tmp" for digit in "01")
+    for path, hours in ((old, 2), (new, 0)):
+        path.write_text("left")
+        os.utime(path, (time.time() - 3600 * hours,) * 2)
+    write_text(tmp_path / "a.txt", "x")
+    assert names(tmp_path) == [new.name, "a.txt"]
 
 
 def names(folder: Path) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 import sys
 import warnings
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from splinesdf.ground import blocks as _blocks
-from splinesdf.ground.blocks import in_blocks
+from splinesdf.ground.blocks import in_blocks, processors
 
 
 def doubled(values: np.ndarray) -> np.ndarray:
@@ -26,6 +27,16 @@ def doubled(values: np.ndarray) -> np.ndarray:
 @pytest.fixture(autouse=True)
 def _several_processors(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_blocks, "processors", lambda: 3)
+
+
+def test_processors_are_counted_where_a_process_cannot_be_bound_to_some(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As on Windows and macOS."""
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    for count, expected in ((5, 5), (None, 1)):
+        monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
+        assert processors() == expected
 
 
 @pytest.mark.parametrize("count", [0, 1, 9, 10, 11, 1000])

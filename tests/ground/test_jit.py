@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import splinesdf
+from splinesdf.ground import jit
 
 PACKAGE = Path(splinesdf.__file__).parent
 CALLED = """from splinesdf.ground.jit import kernel
@@ -78,6 +82,15 @@ def test_a_warm_kernel_is_loaded(package: Path) -> None:
 def test_an_edit_of_what_is_called_is_seen(package: Path) -> None:
     ask(package)
     edit(package / "splinesdf/probe/called.py", "x + 1.0", "x + 5.0")
+    assert ask(package).stdout == "17.0 0 1\n"
+
+
+def test_a_helper_is_linked_into_what_calls_it(package: Path) -> None:
+    called = package / "splinesdf/probe/called.py"
+    edit(called, "import kernel", "import uncounted as kernel")
+    assert ask(package).stdout == "13.0 0 1\n"
+    assert ask(package).stdout == "13.0 1 1\n"
+    edit(called, "x + 1.0", "x + 5.0")
     assert ask(package).stdout == "17.0 0 1\n"
 
 
@@ -170,3 +183,42 @@ def test_code_of_other_sources_goes_after_a_month(package: Path) -> None:
     edit(package / "splinesdf/probe/called.py", "x + 5.0", "x + 6.0")
     assert ask(package).stdout == "18.0 0 1\n"
     assert not before & set(folder.glob("probe.called.called.*"))
+
+
+def test_what_names_a_folder_for_its_modules_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Edits of the modules would not be seen: the digest is of what is named."""
+    monkeypatch.setattr(jit, "_source", lambda _: b"from splinesdf.ground import arrays\n")
+    with pytest.raises(ImportError, match=r"from ground's modules, not from the folder, in a\.b$"):
+        jit._imports.__wrapped__("a.b")
+
+
+def test_without_a_temporary_folder_there_is_none_to_keep_code_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "file"))
+    assert jit._temporary.__wrapped__() == ""
+
+
+def test_a_full_disk_is_noted_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    def save(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    cache = SimpleNamespace(
+        _cache_file=_Index("", "", ""), save_overload=save, cache_path=str(tmp_path)
+    )
+    jit._note_once.cache_clear()
+    jit._keep(SimpleNamespace(_cache=cache), "probe.called", "0" * 40)
+    assert cache._cache_file.name == "probe.called." + 20 * "0"
+    with caplog.at_level(logging.WARNING, "splinesdf"):
+        cache.save_overload("signature", "code")
+        cache.save_overload("signature", "code")
+    assert len(caplog.messages) == 1
+    assert "compiled code cannot be kept" in caplog.text
+
+
+class _Index:
+    """Takes what Numba's index of a file takes."""
+
+    def __init__(self, folder: str, name: str, stamp: str) -> None:
+        self.folder, self.name, self.stamp = folder, name, stamp

@@ -17,6 +17,7 @@ import zlib
 from itertools import combinations, pairwise
 from pathlib import Path
 
+import brotli
 import pytest
 import shapely
 
@@ -92,6 +93,13 @@ def test_a_text_of_many_pieces(tmp_path: Path) -> None:
     _limited(tmp_path / name, content, "pieces", pieces, text="8888")
 
 
+def test_a_path_of_many_commands_is_not_left_out_as_a_broken_one(tmp_path: Path) -> None:
+    path = "<path d='M0 0" + "l1 1" * 30 + "'/><rect width='9' height='9'/>"
+    (tmp_path / "a.svg").write_text(f"<svg xmlns='http://www.w3.org/2000/svg'>{path}</svg>")
+    with pytest.raises(ss.InputError, match=r"Limits\(pieces="):
+        ss.read(tmp_path / "a.svg", limits=ss.Limits(pieces=20))
+
+
 def test_crossings_are_counted_before_there_is_memory_for_them() -> None:
     dice = random.Random(1)
     corners = [(dice.random(), dice.random()) for _ in range(3000)]  # 2,000,000 crossings
@@ -125,6 +133,27 @@ def test_a_shape_keeps_the_limit_of_its_crossings(tmp_path: Path) -> None:
     )
     mended = dataclasses.replace(tight, limits=ss.Limits(crossings=count))
     assert len(mended.boundary.start) == len(roomy.boundary.start)
+
+
+def test_a_saved_fit_has_the_limits_of_who_reads_it(tmp_path: Path) -> None:
+    """Not those of who wrote it: a file would raise them by itself."""
+    file, count = tmp_path / "a.npz", _crossings(STAR)
+    shape = ss.Shape.from_points(STAR)
+    made = dataclasses.replace(shape, limits=ss.Limits(crossings=10**9, pieces=10**9))
+    dataclasses.replace(ss.interpolate(shape, (2, 2)).spline, shape=made).save(file)
+    usual, tight, roomy = (
+        ss.load(file, limits=limits).shape
+        for limits in (None, ss.Limits(crossings=count - 1), ss.Limits(crossings=count))
+    )
+    assert usual is not None
+    assert tight is not None
+    assert roomy is not None
+    assert usual.limits == ss.Limits()
+    with pytest.raises(ss.InputError, match=f"up to {count - 1:,} crossings"):
+        ss.signed_distance(tight, [0.0, 0.0])
+    assert ss.signed_distance(roomy, [0.0, 0.0]) == ss.signed_distance(shape, [0.0, 0.0])
+    with pytest.raises(ss.InputError, match="expected limits such as"):
+        ss.load(file, limits=9)  # type: ignore[arg-type]
 
 
 def test_pairs_side_by_side_are_counted() -> None:
@@ -264,6 +293,19 @@ def _packed_font(size: int) -> bytes:
 def test_a_packed_font_that_is_too_large(tmp_path: Path, name: str) -> None:
     content, tight = (FONTS / name).read_bytes(), ss.Limits(expanded=10_000)
     _refused(tmp_path / name, content, "up to 10,000 bytes of a font", text="A", limits=tight)
+
+
+def test_a_packed_font_is_unpacked_in_parts_up_to_the_limit(tmp_path: Path) -> None:
+    """Three million zeros in a few bytes; and bytes that are not packed."""
+    file = tmp_path / "a.woff2"
+    for packed, expected in (
+        (brotli.compress(bytes(3_000_000)), r"up to 2,000,000 bytes of a font"),
+        (b"not packed by brotli", "expected a font, got one that cannot be read"),
+    ):
+        header = b"wOF2" + bytes(16) + len(packed).to_bytes(4, "big") + bytes(24)
+        file.write_bytes(header + packed)
+        with pytest.raises(ss.InputError, match=expected):
+            ss.read(file, text="A", limits=ss.Limits(expanded=2_000_000))
 
 
 def test_glyphs_within_glyphs_are_counted(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def test_an_unknown_extension_names_what_exists(tmp_path: Path, name: str) -> No
 
 @pytest.mark.parametrize(
     ("contours", "message"),
-    [([], "got none"), (circle(), "put it in brackets"), ([np.zeros(2)], "got ndarray in it")],
+    [([], "got none"), (3.0, "got float"), ([np.zeros(2)], "got ndarray in it")],
 )
 def test_only_a_list_of_contours_can_be_written(
     tmp_path: Path, contours: list[Contour], message: str

@@ -11,8 +11,11 @@ import pytest
 import splinesdf as ss
 from benchmarks.offset_cases import Case, cases, made
 from splinesdf.arclets.tables import FREE, ROUND
+from splinesdf.offsets import offset as driver
+from splinesdf.offsets.at_distance import _meeting
 from splinesdf.offsets.far import hull_offset
 from splinesdf.offsets.offset import deviation
+from splinesdf.offsets.tables import RunArcs
 from tests.named_shapes import gamma
 from tests.offset_checks import Verdict, check_chains
 from tests.offset_region import judge_region, slack
@@ -114,6 +117,36 @@ def test_far_offsets_are_those_of_the_hull(name: str, sizes: float) -> None:
         assert len(contour.arcs) <= 10
 
 
+@pytest.mark.parametrize(
+    ("path", "perimeter"),
+    [("M1 0A1 1 0 0 1 -1 0A1 1 0 0 1 1 0Z", 2.0 * np.pi), ("M0 0L4 1L4 3Z M0 0L4 -3L4 -1Z", 16.0)],
+)
+def test_far_offsets_of_one_circle_and_of_what_touches(path: str, perimeter: float) -> None:
+    """The hull of the latter begins where two of its triangles do."""
+    shape = ss.Shape.from_svg_path(path)
+    distance = 3e4 * shape.size
+    (contour,) = ss.offset(shape, distance, tolerance=1e-3)
+    assert deviation(shape, [contour]) <= 1e-3
+    assert contour.length == pytest.approx(2.0 * np.pi * distance + perimeter, rel=1e-11)
+    assert contour.closed
+
+
+@pytest.mark.parametrize("sizes", [0.25, 3.0, 25.0])
+def test_what_parallels_cannot_do_is_done_by_a_fit_or_the_hull(
+    sizes: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No loose ends are known that are in the way of all shifts: they are pretended."""
+    monkeypatch.setattr(driver, "contours_at", lambda *_, **__: None)
+    distance = sizes * SQUARE.size
+    (contour,) = ss.offset(SQUARE, distance, tolerance=0.05)
+    assert deviation(SQUARE, [contour]) <= 0.05
+    assert contour.fitted == (sizes < 20.0)
+    assert (contour.distance, contour.tolerance) == (distance, 0.05)
+    assert contour.area == pytest.approx(
+        4.0 + 8.0 * distance + np.pi * distance**2, abs=0.05 * contour.length
+    )
+
+
 def test_far_offsets_below_what_the_hull_is_good_for_are_refused_at_once() -> None:
     with pytest.raises(ss.InputError, match=r"expected a tolerance of at least .* times the"):
         ss.offset(SQUARE, 1e6, tolerance=1e-6)
@@ -183,6 +216,25 @@ def test_work_has_a_ceiling(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(conic_fit, "MOST_ARCS", 3)
     with pytest.raises(ss.InputError, match="3 arcs are enough, got 1e-06: raise it"):
         ss.offset(gamma("gamma2"), 0.1, tolerance=1e-6)
+
+
+def test_looks_have_a_ceiling(monkeypatch: pytest.MonkeyPatch) -> None:
+    from splinesdf.offsets.kernels import trim
+
+    monkeypatch.setattr(trim, "trim", lambda *_: -1)  # as it answers after so many
+    with pytest.raises(ss.InputError, match=r"told apart by 50,000,000 looks, got 0\.1, which"):
+        ss.offset(gamma("gamma2"), 0.1, tolerance=1e-6)
+
+
+def test_all_arcs_that_meet_are_found_however_many() -> None:
+    """A lattice of lines, each of which meets all across."""
+    at = np.linspace(0.0, 1.0, 12)
+    ends = np.array([[[(x, -1.0), (x, 2.0)], [(-1.0, x), (2.0, x)]] for x in at]).reshape(-1, 2, 2)
+    arcs = np.stack([ends[:, 0], ends.mean(axis=1), ends[:, 1]], axis=1)
+    rows = np.arange(len(arcs))
+    met = _meeting(RunArcs(arcs, np.ones(len(arcs)), rows), np.full(len(arcs), -1))
+    found = {tuple(sorted(pair)) for pair in met.reshape(-1, 2).tolist()}
+    assert found == {(min(i, j), max(i, j)) for i in rows[::2] for j in rows[1::2]}
 
 
 @pytest.mark.parametrize("distance", [4e-7, 5e-7, 1e-6, 1e-4, -5e-7, -5e-4])

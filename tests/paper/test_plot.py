@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import struct
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 import splinesdf as ss
 from splinesdf import plot
@@ -169,17 +171,84 @@ def test_the_surface_has_the_values_of_the_spline() -> None:
     figure.savefig(io.BytesIO(), format="png")
 
 
+@pytest.mark.parametrize("y_down", [False, True])
+def test_surfaces_are_seen_from_where_drawings_are(y_down: bool) -> None:
+    """A small y is behind in a drawing whose y points down, and in front in all others."""
+    axes = plot.new_figure(4, 4).add_subplot(projection="3d")
+    plot.plot_surface(ss.fit(framed(y_down=y_down), tolerance=0.5).spline, axes)
+    low, high = (proj_transform(2.0, y, 0.0, axes.get_proj())[1] for y in (0.0, 4.0))
+    assert (low > high) == y_down
+
+
 def test_offsets_are_in_the_color_of_their_side_and_named(ax: Axes) -> None:
     spline = fitted().spline
     contours = [c for level in (-0.05, 0.05) for c in spline.contours(level)]
     plot.plot_offsets(gamma("gamma2"), contours, ax)
-    texts = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert texts == ["−0.05", "+0.05"]
+    assert ax.get_legend() is None
+    assert [text.get_text() for text in ax.texts] == ["−0.05", "+0.05"]
+    for text, level in zip(ax.texts, (-0.05, 0.05), strict=True):
+        off = ss.signed_distance(gamma("gamma2"), text.xy) - level
+        assert abs(off) < 1e-2  # the fit's tolerance
     assert to_rgb(plot.INSIDE)[2] > 0.6 > 0.3 > to_rgb(plot.INSIDE)[0]
     for level, color in ((-0.05, plot.INSIDE), (0.05, plot.OUTSIDE)):
         (contour,) = spline.contours(level)
-        painted = color_at(ax, *contour.arcs[0, 0])
-        assert np.abs(painted - to_rgb(color)).max() < 0.35  # the line is three dots wide
+        painted = color_at(ax, *contour.arcs[0, 0], reach=2)
+        assert np.abs(painted - to_rgb(color)).max() < 0.35  # dashes are shorter than that apart
+
+
+def test_offsets_inside_are_dashed_so_that_gray_print_tells(ax: Axes) -> None:
+    spline = fitted().spline
+    contours = [c for level in (-0.05, 0.0, 0.05) for c in spline.contours(level)]
+    ss.plot.drawn(contours, ax)
+    dashed = {
+        to_rgb(lines.get_color()[0]): any(dashes is not None for _, dashes in lines.get_linestyle())
+        for lines in ax.collections
+    }
+    assert dashed == {
+        to_rgb(plot.INSIDE): True,
+        to_rgb(plot.INK): False,
+        to_rgb(plot.OUTSIDE): False,
+    }
+
+
+def test_what_is_outside_the_bands_is_faded(ax: Axes) -> None:
+    spline = ss.fit(gamma("gamma2"), 0.01, band=(-0.05, 0.05)).spline
+    plot.plot_field(spline, ax)
+    plain = Figure(figsize=(4, 4)).add_axes((0.0, 0.0, 1.0, 1.0))
+    plot.plot_field(replace(spline, made=None), plain)
+    x, y = ss.closest_point(gamma("gamma2"), (0.9, 0.4))
+    for at, faded in (((0.4, 0.4), True), ((x + 0.03, y), False)):
+        same = np.abs(color_at(ax, *at) - color_at(plain, *at)).max() < 0.02
+        assert same != faded
+
+
+@pytest.mark.parametrize(
+    ("unit", "named"), [(None, ""), (1.0, ", mm"), (25.4, ", inch"), (2.0, ", units of 2 mm")]
+)
+def test_axes_are_named_with_their_unit(ax: Axes, unit: float | None, named: str) -> None:
+    shape = replace(gamma("gamma2"), unit=unit, y_down=True)
+    assert shape.plot(ax) is ax
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (f"x{named}", f"y{named} (downward)")
+    filled = plot.plot_field(fitted().spline, ax)
+    plot.add_colorbar(filled, ax, unit=unit)
+    (bar,) = ax.child_axes
+    assert bar.get_ylabel() == f"distance{named}"
+
+
+def test_everything_draws_itself_on_axes_or_on_the_current_ones() -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    shape, result = gamma("gamma2"), fitted()
+    contour = shape.offset(-0.05)[0]
+    for thing in (shape, result, result.spline, contour):
+        figure, (left, right) = pyplot.subplots(1, 2)
+        assert thing.plot(left) is left
+        assert left.collections
+        assert thing.plot() is right  # pyplot's current axes
+        assert len(left.collections) == len(right.collections)
+        pyplot.close(figure)
+    del sys.modules["matplotlib.pyplot"]  # so that the others' tests see who loads it
+    with pytest.raises(ss.InputError, match="got ndarray"):
+        ss.plot.drawn([SQUARE], Figure().subplots())
 
 
 def test_many_offsets_are_named_by_their_range(ax: Axes) -> None:
@@ -188,6 +257,16 @@ def test_many_offsets_are_named_by_their_range(ax: Axes) -> None:
     plot.plot_offsets(gamma("gamma2"), contours, ax)
     texts = [text.get_text() for text in ax.get_legend().get_texts()]
     assert texts == ["−0.1 to −0.05", "0", "+0.05 to +0.15"]
+
+
+def test_many_offsets_on_one_side_have_one_name(ax: Axes) -> None:
+    levels = (0.02, 0.05, 0.1, 0.12, 0.15, 0.2)
+    contours = [c for level in levels for c in fitted().spline.contours(level)]
+    plot.plot_offsets(gamma("gamma2"), contours, ax)
+    (text,) = ax.get_legend().get_texts()
+    assert text.get_text() == "+0.02 to +0.2"
+    (line,) = ax.get_legend().get_lines()
+    assert to_rgb(line.get_color()) == to_rgb(plot.OUTSIDE)
 
 
 def test_no_offsets_are_no_error(ax: Axes) -> None:

@@ -373,6 +373,11 @@ def test_random_trees_are_evaluated_as_written(tree: Tree) -> None:
     assert np.array_equal(found, expected, equal_nan=True)
 
 
+def test_a_plus_before_a_term_changes_nothing() -> None:
+    assert np.array_equal(values("+(t^3)"), values("t^3"))
+    assert np.allclose(derivatives("+(t^3)"), (3.0 * T**2, 6.0 * T), rtol=1e-15, atol=0.0)
+
+
 @given(st.recursive(leaves, branches, max_leaves=6))
 def test_random_trees_have_the_slope_of_their_differences(tree: Tree) -> None:
     h = 1e-5

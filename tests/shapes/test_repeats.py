@@ -9,6 +9,7 @@ import pytest
 import shapely
 
 import splinesdf as ss
+from splinesdf.shapes.repeats import same_curve
 from splinesdf.shapes.sources.compiled import polygon
 
 OUTER = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [0.0, 8.0]])
@@ -220,3 +221,28 @@ def test_far_from_the_origin_rounding_is_that_of_the_coordinates() -> None:
     copy = (CUT + far * 0.7) + far * 0.3
     shape = ss.Shape.from_pieces([polygon(OUTER + far), polygon(HOLE[::-1] + far), polygon(copy)])
     assert shape.loop_count == 2
+
+
+def test_curves_of_pieces_of_other_degrees_are_the_same_curve() -> None:
+    """A quadratic piece, again as the cubic that it is, in the other direction."""
+    arch = np.array([[0.0, 0.0], [1.0, 2.0], [2.0, 0.0]])
+    cubic = np.array([arch[0], (arch[0] + 2.0 * arch[1]) / 3.0, (2.0 * arch[1] + arch[2]) / 3.0,
+                      arch[2]])  # fmt: skip
+    base, bent = arch[[2, 0]], cubic.copy()
+    bent[1, 1] += 1e-9
+    for other, count in ((cubic, 1), (bent, 2)):
+        again = [base[::-1], other[::-1]]
+        shape = ss.Shape.from_pieces([[arch, base], again])
+        assert shape.loop_count == count
+        assert ("drawn again" in " ".join(shape.notes)) == (count == 1)
+
+
+def test_long_contours_are_compared_piece_by_piece() -> None:
+    """Too many pairs of pieces for more: another start is told, other cuts are not."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 801)[:-1]
+    corners = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    cut = np.stack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))], axis=1).reshape(-1, 2)
+    one = polygon(corners)
+    assert same_curve(one, polygon(np.roll(corners[::-1], 5, axis=0)), 1e-15)
+    assert not same_curve(one, polygon(cut), 1e-15)
+    assert same_curve(one[:9], polygon(cut)[:18], 1e-15)

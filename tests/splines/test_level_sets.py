@@ -13,6 +13,7 @@ from scipy import ndimage
 import splinesdf as ss
 from splinesdf.contours.contour import Contour, evaluate
 from splinesdf.meshes import Grid, Quadtree
+from splinesdf.splines.level_sets import arcs as level_set_arcs
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 from tests.naive_tree import refine
@@ -213,3 +214,17 @@ def test_constant_spline_has_no_contours() -> None:
 def test_level_that_is_no_number_is_refused() -> None:
     with pytest.raises(ss.InputError, match="finite level"):
         random_spline(0).contours(np.nan)
+
+
+def test_arcs_at_the_last_cut_are_exact(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nearly a whole circle in one triangle, which two cuts make short enough."""
+    center, radius = np.array([0.5, 0.19]), 0.1901
+    grid = Grid.uniform((0.0, -1.0, 1.0, 1.0), 1, 2)
+    spline = quasi_interpolate(lambda p: np.sum((p - center) ** 2, axis=1) - radius**2, grid)
+    monkeypatch.setattr(level_set_arcs, "_CUTS", 2)
+    (contour,) = spline.contours(0.0)
+    assert contour.closed
+    # 1e-13: rounding of values below 1, divided by a gradient of 0.38.
+    at = evaluate(contour.arcs, contour.weights, PARAMETERS)
+    assert np.abs(np.linalg.norm(at - center, axis=-1) - radius).max() < 1e-13
+    assert contour.area == pytest.approx(np.pi * radius**2, rel=1e-12)

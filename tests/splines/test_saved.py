@@ -6,6 +6,7 @@ import dataclasses
 import itertools
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from hypothesis import strategies as st
 
 import splinesdf as ss
 from splinesdf.meshes import Grid, Quadtree
-from splinesdf.splines.provenance import Provenance
+from splinesdf.splines.provenance import Provenance, this_version
 from splinesdf.splines.spline import SplineSDF
 from tests.naive_tree import refine
 from tests.named_shapes import UNIT, gamma
@@ -92,6 +93,14 @@ def test_the_version_is_that_of_this_package() -> None:
     values = dataclasses.asdict(MADE)
     del values["version"]
     assert Provenance(**values).version == ss.__version__
+
+
+def test_sources_that_are_not_installed_have_no_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    def version(name: str) -> str:
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(metadata, "version", version)
+    assert this_version() == "unknown"
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import itertools
 import os
 import tracemalloc
 import zipfile
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -332,6 +333,20 @@ def test_members_encrypted_doubled_and_packed(fields: Fields, path: Path, whole:
     refused(path, "two arrays have one name")
     np.savez_compressed(path, **fields)
     refused(path, "compressed")
+
+
+def test_a_member_that_ends_before_its_claim(fields: Fields, path: Path) -> None:
+    """The list of members says fewer bytes than the array has, with their checksum."""
+    with zipfile.ZipFile(path, "w") as archive:
+        for key, values in fields.items():
+            with archive.open(f"{key}.npy", "w") as member:
+                np.lib.format.write_array(member, values)
+        info = archive.getinfo("ordinates.npy")
+        info.compress_size -= 8
+        stored = path.read_bytes()
+        begin = info.header_offset + 30 + len(info.filename)
+        info.CRC = zlib.crc32(stored[begin : begin + info.compress_size])
+    refused(path, "'ordinates.npy' is cut short")
 
 
 def test_flags_that_are_neither_0_nor_1(fields: Fields, path: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from tests.saving import fields_of, fit_with_shape, version_1
+from tests.saving import about, fields_of, fit_with_shape, version_1, with_about
 
 Fields = dict[str, np.ndarray]
 VERSION_1 = Path(__file__).parents[1] / "data" / "saved_version_1.npz"
@@ -55,6 +55,23 @@ def test_version_1_has_no_fields_of_version_2(fields: Fields, path: Path) -> Non
         refused(path, "expected")
     np.savez(path, **{**old, "name": np.array([2**32 - 1], dtype=np.uint32).view("<U1")[0:1]})
     refused(path, "name")
+
+
+def test_shapes_in_files_of_version_2_have_neither_unit_nor_page(
+    fields: Fields, path: Path
+) -> None:
+    said = about(fields)
+    del said["element"], said["shape"]["unit"], said["shape"]["page"]
+    np.savez(path, **{**with_about(fields, said), "version": np.array(2)})
+    found, expected = ss.load(path), fit_with_shape()
+    assert found.shape is not None
+    assert (found.shape.unit, found.shape.page, found.shape.fill) == (None, None, "evenodd")
+    assert expected.shape is not None
+    assert np.array_equal(found.shape.control, expected.shape.control)
+    assert np.array_equal(found.ordinates, expected.ordinates)
+    # A later file says both.
+    np.savez(path, **{**with_about(fields, said), "version": np.array(3)})
+    refused(path, "element")
 
 
 def test_letters_that_do_not_exist(fields: Fields, path: Path) -> None:

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.web.levels import level_at, ready_distances
+from splinesdf.meshes import Grid, Quadtree
+from splinesdf.web import block
+from splinesdf.web.levels import Level, level_at, level_file, level_files, ready_distances
 from splinesdf.web.page import MODULES, page_text, write_page
 from tests.named_shapes import gamma
 
@@ -86,3 +88,49 @@ def test_refused(tmp_path: Path) -> None:
         write_page(tmp_path / "page.html", bare, distances=[0.1])
     write_page(tmp_path / "page.html", bare)
     assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+def test_more_cells_than_a_page_can_hold_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spline = ss.fit(gamma("gamma1"), tolerance=0.1).spline
+    monkeypatch.setattr(block, "_MOST_CELLS", 3)
+    with pytest.raises(
+        ss.InputError, match=r"expected at most 3 cells for the page, got \d+: raise"
+    ):
+        write_page(tmp_path / "page.html", spline)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_lines_of_the_coarsest_level_are_those_of_the_mesh() -> None:
+    ordinates = np.ones((6, 8))
+    lines = np.array([0.0, 1.0, 3.0]), np.array([-1.0, 0.0, 0.5, 2.0])
+    for spline, expected in (
+        (ss.SplineSDF(Grid.from_lines(*lines), ordinates), lines),
+        (
+            ss.SplineSDF(Quadtree.uniform((0.0, -1.0, 3.0, 2.0), 2, 3), ordinates),
+            ([0.0, 1.5, 3.0], [-1.0, 0.0, 1.0, 2.0]),
+        ),
+    ):
+        found = block._lines(spline)
+        assert [line.tolist() for line in found] == [list(line) for line in expected]
+
+
+def test_where_nothing_is_inside_only_the_shape_itself_lies_ready() -> None:
+    mesh = Grid.uniform((0.0, 0.0, 1.0, 1.0), 2, 2)
+    assert ready_distances(ss.SplineSDF(mesh, np.ones((4, 8)))) == [0.0]
+
+
+def test_kinds_of_files_whose_library_is_missing_are_left_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    levels = [level_at(gamma("gamma1"), 0.1)]
+    assert set(level_files(levels)) == {"svg", "dxf"}
+
+    def without_ezdxf(level: Level, kind: str) -> str:
+        if kind == "dxf":
+            raise ss.MissingExtraError("DXF needs ezdxf")
+        return level_file(level, kind)
+
+    monkeypatch.setattr("splinesdf.web.levels.level_file", without_ezdxf)
+    assert set(level_files(levels)) == {"svg"}

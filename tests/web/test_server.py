@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.web.server import make_server
+from splinesdf.meshes import Grid
+from splinesdf.web.server import _Questions, make_server
 from tests.web.browsing import Shown
 
 Splines = Callable[[str], ss.SplineSDF]
@@ -91,6 +92,24 @@ def test_bad_questions_are_one_line(question: str, address: str) -> None:
     assert "\n" not in line
     assert "Traceback" not in line
     assert len(line) < 300
+
+
+def test_a_fit_without_its_shape_is_answered_with_what_is_missing() -> None:
+    mesh = Grid.uniform((0.0, 0.0, 1.0, 1.0), 2, 2)
+    status, _, body = _Questions(ss.SplineSDF(mesh, np.ones((4, 8)))).answer("offset", "d=0.1")
+    assert status == 400
+    assert b"expected a fit that holds its shape, got another" in body
+
+
+def test_a_machine_without_a_free_port_is_told(
+    splines: Splines, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def taken(*_: object) -> None:
+        raise OSError(98, "Address already in use")
+
+    monkeypatch.setattr("splinesdf.web.server.ThreadingHTTPServer", taken)
+    with pytest.raises(ss.InputError, match=r"^cannot open a port on 127\.0\.0\.1: Address alr"):
+        make_server(splines("part"))
 
 
 def test_live_page(address: str, splines: Splines, open_page: Callable[..., Shown]) -> None:

@@ -36,8 +36,6 @@ _HALVINGS = 12
 # of the largest coordinate. Smaller: next to a cusp directions of what is cut off are rounding;
 # larger: curves far from the origin are not cut, and not understood.
 _SMALLEST, _LOST = 1e-8, 1e-12
-# Halvings to bracket each turn; two turns closer than 2^-40 of a piece are one, to rounding.
-_TURN_HALVINGS = 40
 # A step between control points below this share of the largest coordinate is rounding: the x of a
 # straight vertical piece must not be seen to turn, nor that of an arc that ends where it turns.
 # Too large: a real turn is missed, and the winding number is wrong within that share of the size
@@ -216,7 +214,7 @@ def _cut(arcs: Arcs, largest: float) -> Arcs:
 def _split_turns(arcs: Arcs, axis: int, noise: float) -> Arcs:
     """Split so that one coordinate is monotone along every arc."""
     done = []
-    for _ in range(_TURN_HALVINGS):
+    while True:  # halving halves the steps, too: about as often as a number has bits, all are noise
         steps = np.diff(arcs.control[:, :, axis], axis=1)
         steps[np.abs(steps) <= noise] = 0.0
         turns = _sign_changes(steps)
@@ -232,8 +230,7 @@ def _split_turns(arcs: Arcs, axis: int, noise: float) -> Arcs:
             done.append(_take(halves, np.tile(clear, 2)))
         arcs = split(_take(arcs, turns > 1), 0.5)
         if len(arcs.control) == 0:
-            break
-    return _join([*done, arcs])
+            return _join(done)
 
 
 def _take(arcs: Arcs, chosen: Bools) -> Arcs:

@@ -9,7 +9,7 @@ import click
 
 import splinesdf as ss
 from splinesdf.cli import report
-from splinesdf.cli.report import working
+from splinesdf.cli.console import answer, answering, note, working
 from splinesdf.cli.shapes import axis_of, check_outputs
 from splinesdf.io.readers.source import STROKES
 from splinesdf.rasters.images import checked_format
@@ -43,6 +43,7 @@ from splinesdf.rasters.images import checked_format
     show_default=True,
     help="From where the JSON counts y.",
 )
+@answering
 def atlas(
     source: str,
     output: str,
@@ -68,7 +69,7 @@ def atlas(
             scale = float(em)
         except ValueError as error:
             raise ss.InputError(f"expected --em as a number or each, got {em!r:.40}") from error
-    with working("computing distances (the first run compiles)"):
+    with working("computing distances"):
         found = ss.atlas(
             source,
             size=size,
@@ -79,13 +80,26 @@ def atlas(
             stroke=stroke,
         )
     found.save(output, bits=bits, y_origin=y_origin)
-    for note in found.notes:
-        click.echo(f"note: {note}", err=True)
+    for line in found.notes:
+        note(f"note: {line}")
     high, wide = found.values.shape
-    drawn = sum(glyph.cell is not None for glyph in found.glyphs)
-    report.print_pairs(
-        atlas=f"{wide} × {high} texels, {found.size:g} in an em, range {found.range:g}",
-        glyphs=f"{len(found.glyphs):,}, of which {len(found.glyphs) - drawn:,} with nothing to see",
-        kerning=f"{len(found.kerning):,} pairs",
-    )
-    report.print_written(output, layout)
+    unseen = sum(glyph.cell is None for glyph in found.glyphs)
+    figures = {
+        "texels": [wide, high],
+        "size": found.size,
+        "range": found.range,
+        "glyphs": len(found.glyphs),
+        "unseen": unseen,
+        "kerning": len(found.kerning),
+        "written": [output, layout],
+    }
+
+    def show() -> None:
+        report.print_pairs(
+            atlas=f"{wide} × {high} texels, {found.size:g} in an em, range {found.range:g}",
+            glyphs=f"{len(found.glyphs):,}, of which {unseen:,} with nothing to see",
+            kerning=f"{len(found.kerning):,} pairs",
+        )
+        report.print_written(output, layout)
+
+    answer(figures, show)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import time
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -12,7 +10,8 @@ import click
 
 import splinesdf as ss
 from splinesdf.cli import report
-from splinesdf.cli.report import working
+from splinesdf.cli.console import answer, answering, stopwatch, working
+from splinesdf.cli.pipes import OUTPUT
 from splinesdf.cli.shapes import (
     check_outputs,
     read_shape,
@@ -52,17 +51,17 @@ from splinesdf.splines.archive import SAVED
     "--output",
     "outputs",
     multiple=True,
+    type=OUTPUT,
     help="Save the fit as .npz or .json, write its field as .vtu; again.",
 )
-@click.option("--plot", "picture", help="Draw the fit as .png, .svg or .pdf.")
-@click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+@click.option("--plot", "picture", type=OUTPUT, help="Draw the fit as .png, .svg or .pdf.")
+@answering
 def fit(
     shape: str,
     reading: dict[str, Any],
     tolerance: float | None,
     outputs: tuple[str, ...],
     picture: str | None,
-    as_json: bool,
     **options: Any,
 ) -> None:
     """Fit a signed distance function to SHAPE within a tolerance."""
@@ -77,9 +76,9 @@ def fit(
     options |= {"band": options["band"] or None, "certify": not options.pop("no_proof")}
     if options["max_cells"] is None:
         del options["max_cells"]
-    began = time.perf_counter()
+    watch = stopwatch()
     result = fitted(source, tolerance_of(source, tolerance), **options)
-    seconds = time.perf_counter() - began
+    took = watch()
     for output in outputs:
         if _suffix(output) in FIELDS:
             ss.write(output, result.spline)
@@ -87,12 +86,14 @@ def fit(
             result.spline.save(output)
     if picture is not None:
         draw(result, source, picture)
-    if as_json:
-        figures = report.fit_figures(result, source, seconds=seconds)
-        click.echo(json.dumps(figures, indent=2))
-    else:
-        report.print_fit(result, source, seconds)
+    figures = report.fit_figures(result, source, took)
+    figures["written"] = list(filter(None, [*outputs, picture]))
+
+    def show() -> None:
+        report.print_fit(result, source, took)
         report.print_written(*outputs, picture)
+
+    answer(figures, show)
 
 
 def _suffix(path: str) -> str:
@@ -115,7 +116,7 @@ def _check_fit(path: str, element: str) -> None:
 
 def fitted(shape: ss.Shape, tolerance: float, **options: Any) -> FitResult:
     """Fit a shape, and say how far it is."""
-    with working(f"fitting {shape.name} (the first run compiles)") as say:
+    with working(f"fitting {shape.name}") as say:
         for result in fit_steps(shape, tolerance=tolerance, **options):
             say(
                 f"fitting {shape.name}: {result.cells:,} cells, error {result.error:.2e}, "

@@ -6,16 +6,21 @@ import os
 import sys
 
 import splinesdf as ss
-from splinesdf.cli import report
 
 try:
     import click
+    import rich  # noqa: F401, no more of it than that it is there: what is used is loaded then
 except ImportError:
-    # This is the whole program's first import of it, so there is nothing else to be saved.
-    print('splinesdf: the command line needs: python -m pip install "splinesdf[cli]"')
+    # This is the whole program's first import of them, so there is nothing else to be saved.
+    print(
+        'splinesdf: the command line needs: python -m pip install "splinesdf[cli]"',
+        file=sys.stderr,
+    )
     raise SystemExit(2) from None
 
 from splinesdf.cli.atlas import atlas
+from splinesdf.cli.completion import completion
+from splinesdf.cli.console import write_on_any_terminal
 from splinesdf.cli.demo import demo
 from splinesdf.cli.fit import fit
 from splinesdf.cli.info import info
@@ -28,7 +33,7 @@ from splinesdf.cli.view import view
 
 def main() -> None:
     """Run the command line; bad input is one line on stderr and exit status 2."""
-    report.write_on_any_terminal()
+    write_on_any_terminal()
     try:
         status = commands.main(prog_name="splinesdf", standalone_mode=False)
     except click.Abort:
@@ -66,5 +71,5 @@ def commands() -> None:
     """
 
 
-for _command in (fit, offset, query, texture, atlas, view, paper, info, demo):
+for _command in (fit, offset, query, texture, atlas, view, paper, info, demo, completion):
     commands.add_command(_command)

@@ -11,7 +11,8 @@ import click
 
 import splinesdf as ss
 from splinesdf.cli import report
-from splinesdf.cli.report import working
+from splinesdf.cli.console import answer, answering, note, working
+from splinesdf.cli.pipes import OUTPUT
 from splinesdf.cli.shapes import (
     check_outputs,
     offset_tolerance_of,
@@ -25,7 +26,7 @@ from splinesdf.ground.atomic import write_text
 from splinesdf.io.enclosed import check_sides
 from splinesdf.io.output import check_format, file_text
 from splinesdf.io.placing import CORNERS
-from splinesdf.io.remeasured import measure_file
+from splinesdf.io.remeasured import Worst, measure_file
 from splinesdf.io.source_frame import Told
 from splinesdf.io.writers.options import DIRECTIONS, UNITS, Y_UP, factor, is_used
 from splinesdf.offsets.offset import least_tolerance
@@ -48,6 +49,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
     *("-o", "--output", "outputs"),
     required=True,
     multiple=True,
+    type=OUTPUT,
     help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv; again for another file.",
 )
 @click.option("--arcs", is_flag=True, help="DXF, SVG: only lines and circular arcs.")
@@ -71,6 +73,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
     is_flag=True,
     help="Read the file back, measure it and what it encloses: status 1 if off.",
 )
+@answering
 def offset(
     shape: str,
     reading: dict[str, Any],
@@ -123,18 +126,35 @@ def offset(
     for output, text in texts.items():
         write_text(output, text)
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
-    off = report.print_offsets(source, contours, distances, tolerance)
-    report.print_written(*files)
+    figures = report.offset_figures(source, contours, distances)
     notes = [_about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
-    for note in filter(None, dict.fromkeys(notes)):
-        click.echo(f"note: {note}", err=True)
-    passed = _keeps(off, tolerance)
+    for line in filter(None, dict.fromkeys(notes)):
+        note(f"note: {line}")
+    passed = _keeps(report.worst_of(figures), tolerance)
+    checked: list[tuple[str, Worst]] = []
     if flags["check"]:
         # At the step after the last nothing is to be left.
         ended = () if step is None else ((len(distances) + 1) * step,)
         for output, used in files.items():
             told = Told(**{name: used[name] for name in Told._fields if name in used})
-            passed &= _check(output, source, contours, (*distances, *ended), tolerance, told)
+            worst = _measured(output, source, contours, (*distances, *ended), tolerance, told)
+            passed &= worst is not None and _is_complete(worst, contours, tolerance)
+            checked += [] if worst is None else [(output, worst)]
+
+    def show() -> None:
+        report.print_offsets(source, figures, tolerance)
+        report.print_written(*files)
+        for output, worst in checked:
+            report.print_check(output, worst, tolerance)
+
+    told_all = {
+        "shape": source.name,
+        "tolerance": tolerance,
+        "offsets": figures,
+        "written": list(files),
+        "checks": [report.check_figures(output, worst, tolerance) for output, worst in checked],
+    }
+    answer(told_all, show)
     if not passed:
         raise click.exceptions.Exit(1)
 
@@ -200,7 +220,7 @@ def _contours(
         if step is None:
             contours = offsets_of(source, distances, share * tolerance)
         else:
-            with working(f"offsetting {source.name} in steps of {step:g} (the first run compiles)"):
+            with working(f"offsetting {source.name} in steps of {step:g}"):
                 contours = ss.offset(source, step=step, tolerance=share * tolerance, coarse=True)
     except ss.SplineSDFError as error:
         if share < 1.0 and "tolerance" in str(error):
@@ -210,10 +230,9 @@ def _contours(
         raise
     fitted = sorted({contour.distance for contour in contours if contour.fitted})
     if fitted:
-        click.echo(
+        note(
             f"note: at {', '.join(f'{d:g}' for d in fitted)} the offset is the level set of a fit, "
-            f"within the tolerance, of many arcs",
-            err=True,
+            "within the tolerance, of many arcs"
         )
     if not contours:
         wanted = distances if step is None else (step,)
@@ -266,24 +285,27 @@ def _about_units(source: ss.Shape, suffix: str, units: str | None) -> str | None
     )
 
 
-def _check(
+def _measured(
     output: str,
     source: ss.Shape,
     contours: list[ss.Contour],
     distances: tuple[float, ...],
     tolerance: float,
     told: Told,
-) -> bool:
-    """Measure the file: whether its curves are within the tolerance, complete, and there once."""
-    wanted = Counter(float(contour.distance) for contour in contours)
-    every = sorted({*wanted, *distances})
+) -> Worst | None:
+    """Measure the file again, or say why it cannot be measured."""
+    every = sorted({*(float(contour.distance) for contour in contours), *distances})
     try:
         with working(f"reading {Path(output).name} back"):
-            worst = measure_file(output, source, every, tolerance, told, contours)
+            return measure_file(output, source, every, tolerance, told, contours)
     except ss.InputError as error:  # what was written is not what it should be
         _complain(str(error))
-        return False
-    report.print_check(output, worst, tolerance)
+        return None
+
+
+def _is_complete(worst: Worst, contours: list[ss.Contour], tolerance: float) -> bool:
+    """Whether the file's curves are within the tolerance, all there, and there once."""
+    wanted = Counter(float(contour.distance) for contour in contours)
     if worst.curves != wanted:
         _complain(f"expected curves at {dict(wanted)}, read {worst.curves}")
     if worst.gap > tolerance:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
-
 import click
 
 from splinesdf.cli import report
-from splinesdf.cli.report import working
+from splinesdf.cli.console import answer, answering, working
 
 
 @click.command()
@@ -15,25 +13,26 @@ from splinesdf.cli.report import working
 @click.option(
     "--figures", metavar="DIR", help="Draw Figures 5-12 into a folder: figure_05.png and so on."
 )
-@click.option("--json", "as_json", is_flag=True, help="Print the tables as JSON.")
-def paper(tables: bool, figures: str | None, as_json: bool) -> None:
+@answering
+def paper(tables: bool, figures: str | None) -> None:
     """Recompute the tables and figures of the paper that this package grew from."""
     from splinesdf.paper import tables as source
 
-    if tables or as_json or figures is None:
-        rows = []
+    rows, paths = [], []
+    if tables or figures is None:
         with working("computing the tables") as say:
             for row in source.tables():
                 rows.append(row)
                 say(f"table {row.table}: {row.curve}, {row.operator}, {row.m} × {row.n}")
-        if as_json:
-            click.echo(json.dumps(source.as_json(rows), indent=2))
-        else:
-            report.print_tables(rows)
     if figures is not None:
         from splinesdf.paper.figures import figures as draw_all
 
         with working("drawing the figures"):
-            paths = draw_all(figures)
-        if not as_json:
-            report.print_written(*map(str, paths))
+            paths = [str(path) for path in draw_all(figures)]
+
+    def show() -> None:
+        if rows:
+            report.print_tables(rows)
+        report.print_written(*paths)
+
+    answer(source.as_json(rows) if rows else {"written": paths}, show)

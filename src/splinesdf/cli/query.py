@@ -8,25 +8,28 @@ from typing import Any
 import click
 import numpy as np
 
-import splinesdf as ss
 from splinesdf.cli import report
-from splinesdf.cli.report import working
+from splinesdf.cli.console import answer, answering, as_json, note, working
+from splinesdf.cli.pipes import OUTPUT, SHAPE, TABLE
 from splinesdf.cli.shapes import (
     check_outputs,
     holds_fit,
+    load_fit,
     read_shape,
     reading_options,
 )
 from splinesdf.distance.exact import distance_and_gradient
+from splinesdf.ground.arrays import Floats
 from splinesdf.ground.atomic import write_text
 from splinesdf.io.input import read_points
 
 
 @click.command()
-@click.argument("source", metavar="FIT|SHAPE")
-@click.argument("points")
-@click.option("-o", "--output", help="Write the CSV to a file and not to the screen.")
+@click.argument("source", metavar="FIT|SHAPE", type=SHAPE)
+@click.argument("points", type=TABLE)
+@click.option("-o", "--output", type=OUTPUT, help="Write the CSV to a file and not to the screen.")
 @reading_options
+@answering
 def query(source: str, points: str, output: str | None, reading: dict[str, Any]) -> None:
     """Distance and gradient at the POINTS of a CSV file: x,y,distance,gx,gy.
 
@@ -34,7 +37,7 @@ def query(source: str, points: str, output: str | None, reading: dict[str, Any])
     shape's gradient on the boundary itself.
     """
     if holds_fit(source):
-        spline = ss.load(source)
+        spline = load_fit(source, reading)
         ask: Callable[[Any], Any] = spline.value_and_gradient
     else:
         shape = read_shape(source, reading)
@@ -49,11 +52,22 @@ def query(source: str, points: str, output: str | None, reading: dict[str, Any])
         distance, gradient = ask(at)
     table = np.column_stack([at, distance, gradient])
     lines = ["x,y,distance,gx,gy", *(",".join(map(repr, row)) for row in table.tolist()), ""]
-    if output is None:
-        click.echo("\n".join(lines), nl=False)
-    else:
+    if output is not None:
         write_text(output, "\n".join(lines))
-        report.print_written(output)
+        answer({"points": len(at), "written": [output]}, lambda: report.print_written(output))
+    elif as_json():
+        found = {"points": at, "distance": distance, "gradient": gradient}
+        answer({name: _listed(numbers) for name, numbers in found.items()}, lambda: None)
+    else:
+        click.echo("\n".join(lines), nl=False)
     unknown = int(np.count_nonzero(np.isnan(distance)))
     if unknown:
-        click.echo(f"note: no distance at {unknown} of {len(at)} points", err=True)
+        note(f"note: no distance at {unknown} of {len(at)} points")
+
+
+def _listed(numbers: Floats) -> list[Any]:
+    """Numbers for JSON, which has neither NaN nor infinity: null for these."""
+    known = numbers.astype(object)
+    known[~np.isfinite(numbers)] = None
+    listed: list[Any] = known.tolist()
+    return listed

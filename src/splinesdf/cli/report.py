@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import codecs
-import io
-import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from splinesdf.cli.console import Took, console, plain
 from splinesdf.contours.contour import Contour
 from splinesdf.distance.depth import deepest
-from splinesdf.errors import MissingExtraError
 from splinesdf.fits.fit import FitResult
 from splinesdf.io.enclosed import Sides
 from splinesdf.io.remeasured import Worst
@@ -27,42 +23,9 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.measure import Measurement
     from rich.table import Table
-    from rich.text import Text
 
 # Columns of a terminal that no table of ours reaches: it is measured as if there were so many.
 _WIDEST = 100_000
-# How signs that the reports use are written where there is only ASCII.
-_IN_ASCII = str.maketrans({"×": "x", "¹": "1", "²": "2", "–": "-", "…": "..."})
-
-
-def write_on_any_terminal() -> None:
-    """Make standard output write what its encoding lacks: our signs in ASCII, others as escapes.
-
-    What it lacks may be ×, a letter in a file's name, or a byte of one that is no letter at all.
-    """
-    codecs.register_error("splinesdf", _in_ascii)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="splinesdf")
-
-
-def _in_ascii(error: UnicodeError) -> tuple[str | bytes, int]:
-    if not isinstance(error, UnicodeEncodeError):
-        raise error
-    signs = error.object[error.start : error.end]
-    return signs.translate(_IN_ASCII).encode("ascii", "backslashreplace").decode(), error.end
-
-
-@contextmanager
-def working(text: str) -> Iterator[Callable[[str], None]]:
-    """A spinner with a text on stderr while something runs; nothing if stderr is no terminal.
-
-    Yields what changes the text.
-    """
-    console = _console(stderr=True)
-    spinner = "line" if console.options.ascii_only else "dots"
-    with console.status(_plain(text), spinner=spinner) as status:
-        yield lambda text: status.update(_plain(text))
 
 
 def print_pairs(**pairs: str) -> None:
@@ -73,12 +36,12 @@ def print_pairs(**pairs: str) -> None:
     table.add_column(no_wrap=True, min_width=max(map(len, pairs)))
     table.add_column()
     for name, value in pairs.items():
-        table.add_row(name.replace("_", " "), _plain(value))
-    console = _console()
-    _wide_enough(console, _measured(console, table).minimum).print(table, highlight=False)
+        table.add_row(name.replace("_", " "), plain(value))
+    terminal = console()
+    _wide_enough(terminal, _measured(terminal, table).minimum).print(table, highlight=False)
 
 
-def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
+def print_fit(result: FitResult, shape: Shape, took: Took) -> None:
     """Shape, errors and cost of a fit."""
     made = result.spline.made
     method = "" if made is None else f"{made.space}, {made.operator}"
@@ -93,7 +56,7 @@ def print_fit(result: FitResult, shape: Shape, seconds: float) -> None:
         centre_error=f"{result.centre_error:.4g} (at cell centers only, as in the paper)",
         cells=f"{result.cells:,}",
         evaluations=f"{result.evaluations:,} exact distances",
-        time=f"{seconds:.2f} s",
+        time=took.text,
     )
 
 
@@ -118,7 +81,7 @@ def _asked(tolerance: float | None) -> str:
     return "none was asked for" if tolerance is None else f"{tolerance:.4g}"
 
 
-def fit_figures(result: FitResult, shape: Shape, *, seconds: float) -> dict[str, Any]:
+def fit_figures(result: FitResult, shape: Shape, took: Took) -> dict[str, Any]:
     """The same and the history, for JSON."""
     made = result.spline.made
     return {
@@ -134,7 +97,8 @@ def fit_figures(result: FitResult, shape: Shape, *, seconds: float) -> dict[str,
         "cells": result.cells,
         "stopped": result.stopped,
         "evaluations": result.evaluations,
-        "seconds": seconds,
+        "seconds": took.seconds,
+        "seconds_compiling": took.compiling,
         "history": [
             {
                 "cells": step.cells,
@@ -147,34 +111,46 @@ def fit_figures(result: FitResult, shape: Shape, *, seconds: float) -> dict[str,
     }
 
 
-def print_offsets(
-    shape: Shape, contours: Sequence[Contour], distances: Iterable[float], tolerance: float
-) -> float:
-    """One line for each distance: loops, arcs, length, and how far off they are, measured.
+def offset_figures(
+    shape: Shape, contours: Sequence[Contour], distances: Iterable[float]
+) -> list[dict[str, Any]]:
+    """For each distance: loops, arcs, length, and how far off they are, measured."""
+    figures = []
+    for distance in dict.fromkeys(distances):
+        here = [contour for contour in contours if contour.distance == distance]
+        figures.append(
+            {
+                "distance": distance,
+                "loops": len(here),
+                "arcs": sum(len(contour.arcs) for contour in here),
+                "length": sum(contour.length for contour in here),
+                "deviation": deviation(shape, here) if here else None,
+            }
+        )
+    return figures
 
-    Returns
-    -------
-    float
-        How far off they are at most.
-    """
-    worst = 0.0
+
+def worst_of(figures: Iterable[dict[str, Any]]) -> float:
+    """How far off the offsets are at most."""
+    return max((one["deviation"] or 0.0 for one in figures), default=0.0)
+
+
+def print_offsets(shape: Shape, figures: Iterable[dict[str, Any]], tolerance: float) -> None:
+    """One line for each distance."""
     _print_line(f"offsets of {shape.name}, tolerance {tolerance:.4g}")
     table = _table()
     for name in ("distance", "loops", "arcs", "length", "deviation"):
         table.add_column(name, justify="right")
-    for distance in dict.fromkeys(distances):
-        here = [contour for contour in contours if contour.distance == distance]
-        off = deviation(shape, here)
-        worst = max(worst, off)
+    for one in figures:
+        off = one["deviation"]
         table.add_row(
-            f"{distance:+g}",
-            str(len(here)),
-            f"{sum(len(contour.arcs) for contour in here):,}",
-            f"{sum(contour.length for contour in here):.6g}",
-            f"{off:.3g}" if here else _why_nothing(shape, distance),
+            f"{one['distance']:+g}",
+            str(one["loops"]),
+            f"{one['arcs']:,}",
+            f"{one['length']:.6g}",
+            _why_nothing(shape, one["distance"]) if off is None else f"{off:.3g}",
         )
     _print_table(table)
-    return worst
 
 
 def _why_nothing(shape: Shape, distance: float) -> str:
@@ -196,6 +172,20 @@ def print_check(path: str, worst: Worst, tolerance: float) -> None:
         if worst.keeps(tolerance)
         else f"NOT within the tolerance {tolerance:.4g}",
     )
+
+
+def check_figures(path: str, worst: Worst, tolerance: float) -> dict[str, Any]:
+    """The same, for JSON."""
+    return {
+        "file": path,
+        "curves": sum(worst.curves.values()),
+        "worst": worst.deviation,
+        "distance": worst.distance,
+        "at": list(map(float, worst.point)),
+        "sides": sum(one.asked for one in worst.sides),
+        "wrong_sides": sum(one.wrong for one in worst.sides),
+        "kept": worst.keeps(tolerance),
+    }
 
 
 def wrong_sides(sides: Sides) -> str:
@@ -289,40 +279,23 @@ def _table() -> Table:
 
 def _print_line(text: str) -> None:
     """A line as it is, however narrow the terminal: names of files must come out in one piece."""
-    _console().print(_plain(text), highlight=False, soft_wrap=True)
+    console().print(plain(text), highlight=False, soft_wrap=True)
 
 
 def _print_table(table: Table) -> None:
     """A table as wide as it is, however narrow the terminal: numbers must not be cut."""
-    console = _console()
-    _wide_enough(console, _measured(console, table).maximum).print(table)
+    terminal = console()
+    _wide_enough(terminal, _measured(terminal, table).maximum).print(table)
 
 
-def _measured(console: Console, table: Table) -> Measurement:
+def _measured(terminal: Console, table: Table) -> Measurement:
     """The least width at which no word is cut, and the one at which no line is broken."""
     from rich.measure import Measurement
 
-    return Measurement.get(console, console.options.update(max_width=_WIDEST), table)
+    return Measurement.get(terminal, terminal.options.update(max_width=_WIDEST), table)
 
 
-def _wide_enough(console: Console, width: int) -> Console:
+def _wide_enough(terminal: Console, width: int) -> Console:
     from rich.console import Console
 
-    return console if console.width >= width else Console(width=width)
-
-
-def _plain(text: str, style: str = "") -> Text:
-    """A text as it stands: a name from a file is no markup and must not steer the terminal."""
-    from rich.text import Text
-
-    return Text("".join(c if c.isprintable() else " " for c in text), style)
-
-
-def _console(*, stderr: bool = False) -> Console:
-    try:
-        from rich.console import Console
-    except ImportError as error:
-        raise MissingExtraError(
-            'the command line needs rich: python -m pip install "splinesdf[cli]"'
-        ) from error
-    return Console(stderr=stderr)
+    return terminal if terminal.width >= width else Console(width=width)

@@ -10,7 +10,8 @@ from typing import Any
 import click
 
 import splinesdf as ss
-from splinesdf.cli.report import working
+from splinesdf.cli.console import note, working
+from splinesdf.cli.pipes import SHAPE
 from splinesdf.fits.request import default_tolerance
 from splinesdf.ground.arrays import positive
 from splinesdf.ground.atomic import check_target
@@ -68,6 +69,8 @@ _NAMES = (
     "location",
     "limits",
 )
+# What those are called on the command line that are not called so.
+_CALLED = {"layers": "layer", "ids": "id", "location": "axis"}
 
 
 def reading_options(command: Command) -> Command:
@@ -114,7 +117,7 @@ def axis_of(text: str) -> tuple[str, float]:
 
 def shape_options(command: Command) -> Command:
     """The shape and how it is read."""
-    return click.argument("shape")(reading_options(command))
+    return click.argument("shape", type=SHAPE)(reading_options(command))
 
 
 def tolerance_option(command: Command) -> Command:
@@ -131,8 +134,8 @@ def read_shape(text: str, reading: Mapping[str, Any]) -> ss.Shape:
     """A shape from a file, or one that comes with the package; its notes go to stderr."""
     kept = text in EXAMPLES and not Path(text).exists()
     shape = ss.example(text, **reading) if kept else ss.read(text, **reading)
-    for note in shape.notes:
-        click.echo(f"note: {note}", err=True)
+    for line in shape.notes:
+        note(f"note: {line}")
     return shape
 
 
@@ -140,6 +143,19 @@ def holds_fit(path: str) -> bool:
     """Whether a file is a saved fit: by its ending, .json by what is in it."""
     suffix = Path(path).suffix.lower()
     return suffix == ".npz" or (suffix == ".json" and is_fit(Path(path)))
+
+
+def load_fit(path: str, reading: Mapping[str, Any]) -> ss.SplineSDF:
+    """A saved fit, of which options of reading but limits say nothing: those are refused."""
+    for name, value in reading.items():
+        if name == "limits" or value is None or value is False or value == ():
+            continue
+        option = "--" + _CALLED.get(name, name).replace("_", "-")
+        raise ss.InputError(
+            f"expected a shape for {option}, got a saved fit, {path!r:.200}: leave it out, or give "
+            "the file that the fit was made of"
+        )
+    return ss.load(path, limits=reading["limits"])
 
 
 def check_outputs(source: str, *outputs: str | None) -> None:
@@ -161,7 +177,7 @@ def tolerance_of(shape: ss.Shape, tolerance: float | None) -> float:
     if tolerance is not None:
         return positive(tolerance, "tolerance")
     tolerance = default_tolerance(shape.box)
-    click.echo(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given", err=True)
+    note(f"tolerance {tolerance:.4g}: 1e-3 of the larger side, as none was given")
     return tolerance
 
 
@@ -171,10 +187,9 @@ def offset_tolerance_of(
     """The tolerance of offsets, or the default, which is then told."""
     found = offset_tolerance(shape, distances, tolerance, coarse=coarse)
     if tolerance is None:
-        click.echo(
+        note(
             f"tolerance {found:.4g}: 1e-3 of the larger side, at most 1e-2 of the smallest "
-            f"distance, as none was given",
-            err=True,
+            "distance, as none was given"
         )
     return found
 
@@ -182,7 +197,7 @@ def offset_tolerance_of(
 def offsets_of(shape: ss.Shape, distances: Iterable[float], tolerance: float) -> list[ss.Contour]:
     """The offsets at distances, one after the other."""
     contours = []
-    with working("offsetting (the first run compiles)") as say:
+    with working("offsetting") as say:
         for distance in distances:
             say(f"offsetting {shape.name} by {distance:g}")
             contours += ss.offset(shape, distance, tolerance=tolerance, coarse=True)

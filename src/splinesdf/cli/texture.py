@@ -8,15 +8,16 @@ import click
 
 import splinesdf as ss
 from splinesdf.cli import report
-from splinesdf.cli.report import working
-from splinesdf.cli.shapes import check_outputs, holds_fit, read_shape, reading_options
+from splinesdf.cli.console import answer, answering, note, working
+from splinesdf.cli.pipes import OUTPUT, SHAPE
+from splinesdf.cli.shapes import check_outputs, holds_fit, load_fit, read_shape, reading_options
 from splinesdf.rasters.images import checked_format
 
 
 @click.command()
-@click.argument("source", metavar="FIT|SHAPE")
+@click.argument("source", metavar="FIT|SHAPE", type=SHAPE)
 @reading_options
-@click.option("-o", "--output", required=True, help=".png .tif .tiff .npy")
+@click.option("-o", "--output", required=True, type=OUTPUT, help=".png .tif .tiff .npy")
 @click.option("--texels", type=int, default=64, show_default=True, help="Of the larger side.")
 @click.option(
     "--range",
@@ -34,6 +35,7 @@ from splinesdf.rasters.images import checked_format
     show_default=True,
     help="Which row is first; bottom as in OpenGL.",
 )
+@answering
 def texture(
     source: str,
     reading: dict[str, Any],
@@ -50,17 +52,30 @@ def texture(
     TIFF and NPY: the distances, negative inside.
     """
     checked_format(output, bits)
-    shape = ss.load(source) if holds_fit(source) else read_shape(source, reading)
+    shape = load_fit(source, reading) if holds_fit(source) else read_shape(source, reading)
     check_outputs(source, output)
-    with working("computing distances (the first run compiles)"):
+    with working("computing distances"):
         found = ss.texture(shape, texels, range=width, domain=domain, rows=rows)
     found.save(output, bits=bits)
-    for note in found.notes:
-        click.echo(f"note: {note}", err=True)
+    for line in found.notes:
+        note(f"note: {line}")
     ny, nx = found.values.shape
-    report.print_pairs(
-        texture=f"{nx} × {ny} texels of {found.texel[0]:.6g}",
-        domain=report.box_text(found.domain),
-        distances=f"{found.values.min():.6g} to {found.values.max():.6g}, range {found.range:.6g}",
-    )
-    report.print_written(output)
+    low, high = float(found.values.min()), float(found.values.max())
+    figures = {
+        "texels": [nx, ny],
+        "texel": list(found.texel),
+        "domain": list(found.domain),
+        "distances": [low, high],
+        "range": found.range,
+        "written": [output],
+    }
+
+    def show() -> None:
+        report.print_pairs(
+            texture=f"{nx} × {ny} texels of {found.texel[0]:.6g}",
+            domain=report.box_text(found.domain),
+            distances=f"{low:.6g} to {high:.6g}, range {found.range:.6g}",
+        )
+        report.print_written(output)
+
+    answer(figures, show)

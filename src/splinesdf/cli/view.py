@@ -8,11 +8,13 @@ import click
 
 import splinesdf as ss
 from splinesdf.cli import report
+from splinesdf.cli.console import answer, answering, as_json, note, working
 from splinesdf.cli.fit import fitted
-from splinesdf.cli.report import working
+from splinesdf.cli.pipes import OUTPUT, SHAPE
 from splinesdf.cli.shapes import (
     check_outputs,
     holds_fit,
+    load_fit,
     read_shape,
     reading_options,
     tolerance_of,
@@ -25,14 +27,17 @@ _MANY = 300_000
 
 
 @click.command()
-@click.argument("file")
+@click.argument("file", type=SHAPE)
 @reading_options
 @click.option("--tolerance", type=float, help="Of a shape: the fit's.  [1e-3 of its larger side]")
-@click.option("--html", "page", help="Write the page to one file that needs no server.")
+@click.option(
+    "--html", "page", type=OUTPUT, help="Write the page to one file that needs no server."
+)
 @click.option(
     "-d", "--distance", "distances", type=float, multiple=True, help="--html: exact offsets; again."
 )
 @click.option("--no-open", is_flag=True, help="Print the address, open no browser.")
+@answering
 def view(
     file: str,
     reading: dict[str, Any],
@@ -54,15 +59,15 @@ def view(
     spline = _spline(file, reading, tolerance)
     check_spline(spline)
     if len(spline.ordinates) > _MANY:
-        click.echo(
+        note(
             f"note: {len(spline.ordinates):,} cells take a browser seconds to open: a larger "
-            "tolerance, or a band, has fewer",
-            err=True,
+            "tolerance, or a band, has fewer"
         )
     if page is not None:
         with working("offsetting and writing the page"):
             write_page(page, spline, distances=distances or None)
-        report.print_written(page)
+        figures = {"cells": len(spline.ordinates), "written": [page]}
+        answer(figures, lambda: report.print_written(page))
         return
     # Not above: no other command needs a server.
     import webbrowser
@@ -71,13 +76,18 @@ def view(
 
     with working("making the page"):
         server, address = make_server(spline)
-    click.echo(f"{address}\nCtrl+C ends it.")
+    # The address is what was asked for: it is printed even when all else is not.
+    if as_json():
+        answer({"address": address}, lambda: None)
+    else:
+        click.echo(address)
+        note("Ctrl+C ends it.")
     if not no_open:
         webbrowser.open(address)
     try:
         server.serve_forever()
     except KeyboardInterrupt:
-        click.echo("ended", err=True)
+        note("ended")
     finally:
         server.server_close()
 
@@ -90,4 +100,4 @@ def _spline(file: str, reading: dict[str, Any], tolerance: float | None) -> ss.S
         raise ss.InputError(
             f"expected a shape for --tolerance, got a saved fit, {file!r}: it has its own"
         )
-    return ss.load(file)
+    return load_fit(file, reading)

@@ -22,6 +22,7 @@ from splinesdf.contours.contour import (
     to_origin,
     unit,
 )
+from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, positive
 
 # Arcs that meet at less than this angle (radians) are joined smoothly, to which the biarcs hold
@@ -64,6 +65,8 @@ def as_arcs(contour: Contour, *, tolerance: float) -> Contour:
     ----------
     [Bolton1975] Biarc curves, Computer-Aided Design 7 (2), 89-92: the biarc of equal legs.
     """
+    if not isinstance(contour, Contour):
+        raise InputError(f"expected a Contour, got {type(contour).__name__}: give them one by one")
     check_tolerance(tolerance, contour.arcs)
     grain = rounding(contour.arcs)
     contour = unfolded(contour)
@@ -106,12 +109,10 @@ def arc_elements(contour: Contour, *, tolerance: float) -> list[Element]:
     # The arcs were rounded once more, which tells on those of a few roundings: they are found
     # with twice the grain, and what even then is neither line nor circle is no wider than that.
     for piece in elements(arcs, 2.0 * rounding(arcs.arcs)):
-        if piece.kind not in (Kind.LINE, Kind.CIRCLE):
-            result.append(Element(Kind.LINE, piece.first, piece.count, piece.start, piece.end))
-        elif piece.is_flat(allowed):
-            result += piece.chords(allowed)
+        if piece.kind is Kind.CIRCLE:
+            result += piece.chords(allowed) if piece.is_flat(allowed) else [piece]
         else:
-            result.append(piece)
+            result.append(Element(Kind.LINE, piece.first, piece.count, piece.start, piece.end))
     return result
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,13 +19,18 @@ from splinesdf.ground.arrays import (
     positive,
 )
 from splinesdf.ground.brief import brief, counted
+from splinesdf.ground.card import Picture, card
+from splinesdf.ground.doors import above, public
+from splinesdf.ground.values import by_value
 
-# A halving divides the sag of an arc by four, or by nearly two next to a cusp: so many are far more
-# than any tolerance above rounding takes. More change nothing; fewer would leave an arc coarse.
-_HALVINGS = 120
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 # A tolerance below this share of the largest coordinate asks for more than doubles hold:
 # subdivision would go on splitting rounding noise.
 _ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
+# The default tolerance of polylines, as a share of the larger side: what a picture shows.
+_OF_SIDE = 1e-3
 # Arcs are even if their sag is at most this share of the chord (a turn of about 0.4 radians) and
 # the speeds along them differ by no more than about this factor; 16 Gauss points are then good to
 # rounding. Larger: digits are lost. Smaller: only slower.
@@ -34,6 +39,7 @@ _EVEN_SPEEDS = 2.0
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
+@by_value
 @dataclass(frozen=True, eq=False)
 class Contour:
     """A chain of conic arcs, each starting exactly where the one before it ended.
@@ -72,7 +78,7 @@ class Contour:
     closed: bool = True
     distance: float = 0.0
     y_down: bool = False
-    parent: Contour | None = field(default=None, repr=False)
+    parent: Contour | None = field(default=None, repr=False, compare=False)
     tolerance: float | None = None
     fitted: bool = False
     unit: float | None = None
@@ -145,21 +151,30 @@ class Contour:
         fields, ancestors = state
         self.__dict__.update(fields, parent=ancestors[-1] if ancestors else None)
 
-    def points(self, tolerance: float) -> Floats:
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The smallest box around the contour, to rounding: xmin, ymin, xmax, ymax."""
+        return box([self])
+
+    def points(self, tolerance: float | None = None) -> Floats:
         """The contour as a polyline that is nowhere farther from it than the tolerance.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            1e-3 of the larger side of its box unless given.
 
         Returns
         -------
         ndarray, shape (n, 2)
             All vertices lie on the arcs. Closed: the last one repeats the first.
         """
-        check_tolerance(tolerance, self.arcs)
+        allowed = self._tolerance(tolerance)
         arcs, origin = to_origin(self.arcs)
         weights = self.weights
-        for _ in range(_HALVINGS):
-            coarse = _sag(arcs, weights) > tolerance
-            if not coarse.any():
-                break
+        # Halving divides the sag by four, or by nearly two next to a cusp: it soon is below any
+        # tolerance above rounding.
+        while (coarse := _sag(arcs, weights) > allowed).any():
             arcs, weights = halve(arcs, weights, coarse)
         return np.concatenate([arcs[:, 0], arcs[-1:, 2]]) + origin
 
@@ -178,6 +193,39 @@ class Contour:
         spokes, velocities, steps = self._quadrature()
         swept = spokes[..., 0] * velocities[..., 1] - spokes[..., 1] * velocities[..., 0]
         return float(0.5 * np.sum(swept * steps))
+
+    def svg_path(self, tolerance: float | None = None) -> str:
+        """SVG path data (the ``d`` attribute), exact but for hyperbolas; coordinates as they are.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            Of hyperbolas, which become cubics: as that of `points`.
+        """
+        data: str = above("io.writers.svg").path_data(self, self._tolerance(tolerance))
+        return data
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the contour on axes, the current ones unless given, and return them."""
+        axes: Axes = public("plot").drawn(self, ax)
+        return axes
+
+    def _repr_html_(self) -> str:
+        figures = {
+            "distance": f"{self.distance:g}",
+            "arcs": f"{len(self.arcs):,} ({'closed' if self.closed else 'open'})",
+            "length": f"{self.length:.6g}",
+        }
+        picture = Picture([self.points()], self.bounds, y_down=self.y_down, closed=self.closed)
+        return card("Contour", "", figures, picture)
+
+    def _tolerance(self, given: float | None) -> float:
+        """A tolerance that is none of rounding, or the default."""
+        if given is None:
+            low, high = np.reshape(self.bounds, (2, 2))
+            return max(_OF_SIDE * float(np.max(high - low)), smallest_tolerance(self.arcs))
+        check_tolerance(given, self.arcs)
+        return given
 
     def _quadrature(self) -> tuple[Floats, Floats, Floats]:
         """Points as seen from the first, velocities and steps of a Gauss rule over all arcs."""
@@ -262,8 +310,7 @@ def halve(arcs: Floats, weights: Floats, which: np.ndarray) -> tuple[Floats, Flo
 def evened(arcs: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """The arcs, halved until each turns little and its speed is nearly even, down to rounding."""
     negligible = _ROUNDING * np.abs(arcs).max()
-    # 60 halvings shrink any arc below rounding: a limit for cusps, which never flatten.
-    for _ in range(60):
+    while True:  # cusps never flatten, but soon are below rounding
         early, late, chords = (
             np.linalg.norm(arcs[:, j] - arcs[:, i], axis=1) for i, j in ((0, 1), (1, 2), (0, 2))
         )
@@ -272,9 +319,8 @@ def evened(arcs: Floats, weights: Floats) -> tuple[Floats, Floats]:
         curved = _sag(arcs, weights) > _EVEN_SAG * chords
         rough = (uneven | curved) & (early + late > negligible)
         if not rough.any():
-            break
+            return arcs, weights
         arcs, weights = halve(arcs, weights, rough)
-    return arcs, weights
 
 
 def box(contours: Iterable[Contour]) -> tuple[float, float, float, float]:

@@ -19,9 +19,9 @@ from splinesdf.arclets.thresholds import CORNER
 from splinesdf.ground.arrays import Floats, Ints, as_points, positive
 from splinesdf.ground.blocks import in_blocks, processors
 from splinesdf.ground.brief import brief, counted
-from splinesdf.meshes.lattice import DistanceGrid, node_count
+from splinesdf.meshes.lattice import DistanceGrid, Nodes, grid_nodes
 from splinesdf.meshes.mesh import Box, check_domain
-from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.shape import Shape, check_shape
 
 # Closer to the boundary than this share of the size, the vector from the closest point is mostly
 # rounding. Larger: good directions are withheld; smaller: noise is given as a direction.
@@ -108,7 +108,7 @@ def signed_distance(
     flat = array.reshape(-1, 2)
     farthest = _farthest(max_distance)
     result = np.empty(len(flat))
-    boundary = shape.boundary
+    boundary = check_shape(shape).boundary
 
     def work(part: slice) -> None:
         feet, order = _feet(shape, boundary, flat[part], farthest=farthest)
@@ -120,8 +120,8 @@ def signed_distance(
 
 def signed_distance_grid(
     shape: Shape,
-    nx: int,
-    ny: int,
+    nx: Nodes,
+    ny: int | None = None,
     *,
     domain: Box | None = None,
     max_distance: float | None = None,
@@ -132,7 +132,7 @@ def signed_distance_grid(
     ----------
     shape : Shape
     nx, ny : int
-        Nodes each way, at least 2.
+        Nodes each way, at least 2: two numbers, a pair of them, or one for both.
     domain : (xmin, ymin, xmax, ymax), optional
         The shape's box grown by a tenth of its size unless given.
     max_distance : float, optional
@@ -143,12 +143,11 @@ def signed_distance_grid(
     DistanceGrid
         Its distances are those of `signed_distance` at these points, found quicker.
     """
-    box = shape.default_domain() if domain is None else check_domain(domain)
-    columns, rows = node_count(nx, "nx"), node_count(ny, "ny")
-    farthest = _farthest(max_distance)
-    x, y = np.linspace(box[0], box[2], columns), np.linspace(box[1], box[3], rows)
+    box = check_shape(shape).default_domain() if domain is None else check_domain(domain)
+    x, y = grid_nodes(nx, ny, box)
+    farthest, columns, rows = _farthest(max_distance), len(x), len(y)
     distance = np.empty((rows, columns))
-    boundary = shape.boundary
+    boundary = check_shape(shape).boundary
     across = math.ceil(columns / _TILE)
 
     def work(tiles: slice) -> None:
@@ -195,7 +194,7 @@ def project(shape: Shape, points: ArrayLike) -> Projection:
     """
     array = as_points(points)
     flat = array.reshape(-1, 2)
-    boundary = shape.boundary
+    boundary = check_shape(shape).boundary
     turn = shape.corners
     count = len(flat)
     found = Projection(

@@ -9,21 +9,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Literal, Unpack, cast
+from typing import TYPE_CHECKING, Literal, NoReturn, Unpack, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from splinesdf.errors import InputError, ToleranceNotReached
+from splinesdf.errors import ToleranceNotReached
 from splinesdf.fits.certificate import Wanted, cell_errors, largest_error
 from splinesdf.fits.request import Band, FitOptions, fit_options, request_of
 from splinesdf.fits.target import ShapeTarget
 from splinesdf.fits.trials import Trial
 from splinesdf.ground.arrays import Bools, Floats
 from splinesdf.ground.brief import brief, counted
+from splinesdf.ground.doors import public
+from splinesdf.ground.progress import Report, checked_report, tell
 from splinesdf.meshes import Mesh
-from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.shape import Shape, check_shape
 from splinesdf.splines.provenance import Provenance
-from splinesdf.splines.spline import SplineSDF
+from splinesdf.splines.spline import Outside, SplineSDF
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Stopped = Literal["refining", "reached", "max_cells", "min_side", "given"]
 
@@ -70,6 +76,24 @@ class FitResult:
     def __repr__(self) -> str:
         cells = counted(self.cells, "cell")
         return brief("FitResult", self.spline.name, cells, self._made.errors)
+
+    def __call__(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
+        """The spline's values, shape (..., 2) -> (...,)."""
+        return self.spline(points, outside=outside)
+
+    def __getattr__(self, name: str) -> NoReturn:
+        # Not found here: what is asked may be what the spline answers.
+        known = not name.startswith("_") and hasattr(SplineSDF, name)
+        hint = f": ask its spline, result.spline.{name}" if known else ""
+        raise AttributeError(f"a FitResult has no {name!r}{hint}")
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the values and the mesh on axes, the current ones unless given, and return them."""
+        axes: Axes = public("plot").drawn(self, ax)
+        return axes
+
+    def _repr_html_(self) -> str:
+        return self.spline._card("FitResult")
 
     @property
     def _made(self) -> Provenance:
@@ -133,7 +157,13 @@ class FitResult:
 
 
 @fit_options
-def fit(shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptions]) -> FitResult:
+def fit(
+    shape: Shape,
+    tolerance: float | None = None,
+    *,
+    progress: Report | None = None,
+    **options: Unpack[FitOptions],
+) -> FitResult:
     """Approximate the signed distance of a shape to a tolerance.
 
     Parameters
@@ -142,6 +172,9 @@ def fit(shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptio
     tolerance : float, optional
         Largest |s - u| allowed, in the shape's unit: 1e-3 of the larger side of its box unless
         given. The result says in ``.tolerance`` what it was.
+    progress : callable, optional
+        Called after each round with a `Progress`: ``print``, for example. What it raises ends the
+        fit.
 
     Other Parameters
     ----------------
@@ -183,7 +216,10 @@ def fit(shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptio
     ----------
     [Wang2014] Algorithm 2, with the true error in place of the error at cell centers.
     """
-    *_, result = fit_steps(shape, tolerance, **options)
+    report = checked_report(progress)
+    for result in fit_steps(shape, tolerance, **options):
+        text = f"{counted(result.cells, 'cell')}, error {result.error:.2e}"
+        tell(report, text, len(result.history))
     return require_reached(result)
 
 
@@ -209,12 +245,7 @@ def fit_steps(
     shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptions]
 ) -> Iterator[FitResult]:
     """The loop of `fit`, one result a round; the last one says why it ended and raises nothing."""
-    if not isinstance(shape, Shape):
-        raise InputError(
-            f"expected a Shape, got {type(shape).__name__}: read one by splinesdf.read, or make it "
-            "by Shape.from_points"
-        )
-    target = ShapeTarget(shape)
+    target = ShapeTarget(check_shape(shape))
     asked = request_of(target, tolerance, options)
     tolerance, bands, certify = asked.tolerance, asked.bands, asked.certify
     trial = Trial(target, shape, asked.space, asked.operator)

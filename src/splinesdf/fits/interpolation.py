@@ -22,7 +22,7 @@ from splinesdf.fits.trials import Trial
 from splinesdf.ground.arrays import Floats
 from splinesdf.meshes import Box, Grid
 from splinesdf.meshes.mesh import check_domain
-from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.shape import Shape, check_shape
 from splinesdf.spaces.elements import find_element
 from splinesdf.spaces.space import space_on
 from splinesdf.splines.provenance import Provenance
@@ -79,10 +79,7 @@ def interpolate(
     ----------
     [Wang2014] Section 3.
     """
-    if not isinstance(shape, Shape):
-        raise InputError(
-            f"expected a Shape, got {type(shape).__name__}: read one by splinesdf.read"
-        )
+    check_shape(shape)
     kind, grid = find_element(element), _grid(shape, mesh, domain)
     operator = kind.defaults["given"] if operator is None else operator
     kind.operator(operator)

@@ -122,11 +122,9 @@ def _first_cells(box: Box, start: tuple[int, int] | None, max_cells: int) -> tup
     """Cells each way to start from, never more than ``max_cells``."""
     if start is None:
         width, height = box[2] - box[0], box[3] - box[1]
-        for count in range(_START, 0, -1):
-            side = max(width, height) / count
-            m, n = max(1, round(width / side)), max(1, round(height / side))
-            if m * n <= max_cells:
-                break
+        sides = (max(width, height) / count for count in range(_START, 0, -1))
+        counts = ((max(1, round(width / side)), max(1, round(height / side))) for side in sides)
+        m, n = next((m, n) for m, n in counts if m * n <= max_cells)  # the last are 1 x 1
     else:
         m, n = _check_start(start)
     if m * n > max_cells:

@@ -16,7 +16,7 @@ from splinesdf.ground.paths import as_path, shortened
 
 try:
     import fcntl
-except ImportError:  # on Windows, which deletes no file that is open
+except ImportError:  # pragma: no cover: on Windows, which deletes no file that is open
     fcntl = None  # type: ignore[assignment]
 
 _LEFT = re.compile(r"\.splinesdf-[0-9a-f]{16}\.tmp")

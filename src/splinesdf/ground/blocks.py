@@ -27,7 +27,7 @@ def _pool(workers: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(workers, thread_name_prefix=_NAME)
 
 
-if hasattr(os, "register_at_fork"):
+if hasattr(os, "register_at_fork"):  # pragma: no branch: Windows has no fork
     # A child process has none of its parent's threads.
     os.register_at_fork(after_in_child=_pool.cache_clear)
 

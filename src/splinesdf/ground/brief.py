@@ -30,6 +30,20 @@ def counted(count: int, noun: str) -> str:
     return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
+def measured_in(unit: float | None) -> str:
+    """What follows a quantity for a unit in millimeters: ", mm", or nothing if it is not known.
+
+    Examples
+    --------
+    >>> f"distance{measured_in(25.4)}"
+    'distance, inch'
+    """
+    if unit is None:
+        return ""
+    names = {1.0: "mm", 10.0: "cm", 25.4: "inch", 1000.0: "m"}
+    return f", {names.get(unit, f'units of {unit:.6g} mm')}"
+
+
 def without_caches(kind: Class) -> Class:
     """Pickle and copy objects of a dataclass by their fields; what follows from these is left out.
 

@@ -25,6 +25,7 @@ import numba
 from llvmlite import binding
 from numba.core import config as numba_config
 
+import splinesdf.ground.compiling  # noqa: F401  so that it sees what is compiled from here on
 from splinesdf.ground.linked import keep_little
 
 config: Any = numba_config  # its names are made at run time

@@ -10,6 +10,7 @@ import numpy as np
 
 from splinesdf.contours.contour import Contour, box, check_tolerance, smallest_tolerance
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import positive
 from splinesdf.ground.atomic import write_text
 from splinesdf.ground.options import check_known, with_options
 from splinesdf.ground.paths import as_path
@@ -17,6 +18,7 @@ from splinesdf.io.fields import FIELDS, write_field
 from splinesdf.io.placing import Placement, placed
 from splinesdf.io.writers import WRITERS
 from splinesdf.io.writers.options import Milling, Options, check_options, factor
+from splinesdf.shapes.shape import Shape
 from splinesdf.splines.spline import SplineSDF
 
 # The default tolerance as a share of the contours' size: far below what a machine cuts or a
@@ -55,7 +57,7 @@ write_options = with_options(WriteOptions, DEFAULTS)
 @write_options
 def write(
     path: str | os.PathLike[str],
-    contours: Iterable[Contour] | SplineSDF,
+    contours: Iterable[Contour] | Contour | Shape | SplineSDF,
     **options: Unpack[WriteOptions],
 ) -> None:
     """Write contours, or the field of a spline, to a file, whole or not at all.
@@ -72,8 +74,9 @@ def write(
         ``.csv``                 points
         ``.vtu``                 a spline: exact, on quadratic triangles (`SplineSDF.triangles`)
         ======================== ===========================================================
-    contours : iterable of Contour, or SplineSDF
-        A spline takes none of the options.
+    contours : iterable of Contour, one Contour, Shape, or SplineSDF
+        Of a shape its boundary is written (its offset by 0, to half the tolerance); a spline takes
+        none of the options.
 
     Other Parameters
     ----------------
@@ -124,11 +127,21 @@ def write(
         defaults: dict[str, Any] = {**DEFAULTS}
         given = [name for name, value in options.items() if value is not defaults[name]]
         return write_field(path, contours, given)
+    if isinstance(contours, Shape):
+        # Half of what the file may be off is for the conics that stand for the pieces.
+        asked = options.get("tolerance")
+        whole = (
+            _DEFAULT_TOLERANCE * contours.size if asked is None else positive(asked, "tolerance")
+        )
+        options["tolerance"] = 0.5 * whole
+        contours = contours.offset(0.0, tolerance=0.5 * whole)
     write_text(path, file_text(path, contours, **options))
 
 
 def file_text(
-    path: str | os.PathLike[str], contours: Iterable[Contour], **options: Unpack[WriteOptions]
+    path: str | os.PathLike[str],
+    contours: Iterable[Contour] | Contour,
+    **options: Unpack[WriteOptions],
 ) -> str:
     """What `write` writes."""
     check_known("write", options, WriteOptions)
@@ -208,9 +221,9 @@ def check_format(
     return suffix, Placement(scale, origin, flip)
 
 
-def _as_contours(contours: Iterable[Contour]) -> list[Contour]:
+def _as_contours(contours: Iterable[Contour] | Contour) -> list[Contour]:
     if isinstance(contours, Contour):
-        raise InputError("expected a list of contours, got one Contour: put it in brackets")
+        return [contours]
     if not isinstance(contours, Iterable):
         raise InputError(f"expected a list of contours or a spline, got {type(contours).__name__}")
     chains = list(contours)

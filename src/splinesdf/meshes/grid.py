@@ -12,9 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, shown
 from splinesdf.ground.brief import brief, without_caches
+from splinesdf.ground.values import by_value
 from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 
+@by_value
 @without_caches
 @dataclass(frozen=True, eq=False)
 class Grid:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats, whole
+from splinesdf.ground.arrays import Floats, shown, whole
 from splinesdf.ground.brief import brief
+from splinesdf.meshes.mesh import Box
 
 # Nodes along a side of a grid. More: squared they have no place in any memory, and their count none
 # in an index; fewer: a long strip could not be asked for.
 _MOST_NODES = 10_000_000
+
+Nodes = int | tuple[int, int]
 
 
 class DistanceGrid(NamedTuple):
@@ -29,6 +34,22 @@ class DistanceGrid(NamedTuple):
 
     def __repr__(self) -> str:
         return brief("DistanceGrid", "", f"{len(self.x)} x {len(self.y)} nodes")
+
+
+def grid_nodes(nx: Nodes, ny: int | None, box: Box) -> tuple[Floats, Floats]:
+    """Equal steps over a box each way, its border included.
+
+    Parameters
+    ----------
+    nx, ny : int
+        How many nodes: two numbers, a pair of them as ``nx``, or one for both.
+    """
+    if isinstance(nx, tuple | list):
+        if ny is not None or len(nx) != 2:
+            raise InputError(f"expected for nx a pair of node counts or one, got {shown(nx)}")
+        nx, ny = nx
+    columns, rows = node_count(nx, "nx"), node_count(nx if ny is None else ny, "ny")
+    return np.linspace(box[0], box[2], columns), np.linspace(box[1], box[3], rows)
 
 
 def node_count(count: int, name: str) -> int:

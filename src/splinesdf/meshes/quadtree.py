@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.ground.brief import brief, counted, without_caches
+from splinesdf.ground.values import by_value
 from splinesdf.meshes.mesh import Box, check_counts, check_domain
 
 # Lattice coordinates of the finest level, times a few roots, must stay far inside 63 bits when two
@@ -21,6 +22,7 @@ DEEPEST = 26
 _LATTICE = 2**30
 
 
+@by_value
 @without_caches
 @dataclass(frozen=True, eq=False)
 class Quadtree:

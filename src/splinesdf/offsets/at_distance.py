@@ -93,7 +93,8 @@ def _fit_clear_of_itself(shape: Shape, loops: Loops, distance: float, tolerance:
     runs, starts = runs_of(shape, loops, distance, tolerance)
     allowed = np.full(len(runs.kind), tolerance)
     fitted = _fitted(shape, runs, distance, allowed)
-    for closer in range(_ROUNDS):
+    left = _ROUNDS
+    while True:
         found = _without_stubs(fitted, runs.kind, starts, tolerance)
         first = np.searchsorted(found.owner, starts)
         following = np.arange(1, len(found.arcs) + 1)
@@ -101,7 +102,8 @@ def _fit_clear_of_itself(shape: Shape, loops: Loops, distance: float, tolerance:
         meeting = np.unique(found.owner[_meeting(found, following)])
         # Lines and circles do not depend on the tolerance.
         again = meeting[runs.kind[meeting] == FREE]
-        if not len(again) or closer == _ROUNDS - 1:
+        left -= 1
+        if not len(again) or not left:
             break
         allowed[again] *= _CLOSER
         fitted = _refitted(shape, runs, distance, allowed, fitted, again)

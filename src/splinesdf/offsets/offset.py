@@ -19,9 +19,11 @@ from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError
 from splinesdf.fits.fit import fit
 from splinesdf.ground.arrays import as_floats, finite, positive, shown
+from splinesdf.ground.brief import counted
+from splinesdf.ground.progress import Report, checked_report, tell
 from splinesdf.offsets.at_distance import Attempt, contours_at
 from splinesdf.offsets.far import has_no_fit, hull_offset, is_far
-from splinesdf.shapes.shape import Shape
+from splinesdf.shapes.shape import Shape, check_shape
 
 # Points an arc at which `deviation` measures: an arc's error has one or two bumps.
 _MEASURED = np.linspace(0.0, 1.0, 9)
@@ -51,6 +53,7 @@ def offset(
     tolerance: float | None = None,
     step: float | None = None,
     coarse: bool = False,
+    progress: Report | None = None,
 ) -> list[Contour]:
     """The curves at given distances from the boundary, already trimmed.
 
@@ -67,6 +70,9 @@ def offset(
         Instead of distances: step, 2 step, 3 step, ... until nothing is left, as for pocketing.
     coarse : bool
         Allow a tolerance above a quarter of the smallest distance, which may leave little of it.
+    progress : callable, optional
+        Called after each distance with a `Progress`: ``print``, for example. What it raises ends
+        the work.
 
     Returns
     -------
@@ -93,10 +99,12 @@ def offset(
     ----------
     [Wang2014] section 5: an offset's swallowed parts are no part of a level set.
     """
+    check_shape(shape)
+    checked_report(progress)
     if step is not None:
         if distances is not None:
             raise InputError("expected distances or a step, got both")
-        return _until_nothing_is_left(shape, step, tolerance, coarse)
+        return _until_nothing_is_left(shape, step, tolerance, coarse, progress)
     if distances is None:
         raise InputError("expected distances or a step, got neither")
     wanted = np.atleast_1d(as_floats(distances, "distances"))
@@ -104,7 +112,12 @@ def offset(
         raise InputError(f"expected one or more finite distances, got {shown(distances)}")
     asked = offset_tolerance(shape, wanted.tolist(), tolerance, coarse=coarse)
     _check_rounding(shape, float(np.abs(wanted).max()), asked)
-    return [contour for d in wanted.tolist() for contour in _at(shape, d, asked)]
+    result: list[Contour] = []
+    for done, distance in enumerate(wanted.tolist(), start=1):
+        found = _at(shape, distance, asked)
+        result += found
+        tell(progress, _told(distance, found), done, len(wanted))
+    return result
 
 
 def offset_tolerance(
@@ -145,7 +158,7 @@ def _check_rounding(shape: Shape, farthest: float, tolerance: float) -> None:
 
 
 def _until_nothing_is_left(
-    shape: Shape, step: float, tolerance: float | None, coarse: bool
+    shape: Shape, step: float, tolerance: float | None, coarse: bool, progress: Report | None
 ) -> list[Contour]:
     """Offset inward at step, 2 step, ... as far as contours are left."""
     try:
@@ -169,8 +182,13 @@ def _until_nothing_is_left(
     number = 1
     while found := _at(shape, number * size, asked):
         result += found
+        tell(progress, _told(number * size, found), number)
         number += 1
     return result
+
+
+def _told(distance: float, found: list[Contour]) -> str:
+    return f"offset by {distance:g}, {counted(len(found), 'contour')}"
 
 
 def _half_width(shape: Shape) -> float:

@@ -136,10 +136,9 @@ def _straightened(piece: Floats, largest: float) -> Floats:
     if not chord.any():
         # Out and back again: along the line to the farthest control point, if they are on one.
         chord = apart[int(np.argmax(np.abs(apart).max(axis=1)))]
-    length = float(np.hypot(*chord))
-    if reach == 0.0 or length == 0.0:
+    if reach == 0.0:
         return piece[[0, -1]]
-    unit = chord / length
+    unit = chord / float(np.hypot(*chord))
     across = float(np.abs(unit[0] * apart[:, 1] - unit[1] * apart[:, 0]).max())
     return piece[[0, -1]] if across <= _STRAIGHT * largest else piece.copy()
 

@@ -122,9 +122,8 @@ def _runs(boundary: Arclets, chain: list[int]) -> list[tuple[int, int]]:
         rising = interval[a, 1] > interval[a, 0], interval[b, 1] > interval[b, 0]
         return bool(same and rising[0] == rising[1])
 
+    # There is one at least: where a piece closes in itself, it ends and begins.
     breaks = [k for k in range(len(chain)) if not goes_on(chain[k - 1], chain[k])]
-    if not breaks:  # all of it is one piece, which closes in itself
-        breaks = [0]
     turned = chain[breaks[0] :] + chain[: breaks[0]]
     marks = [k - breaks[0] for k in breaks] + [len(chain)]
     return [(turned[begin], turned[end - 1]) for begin, end in pairwise(marks)]

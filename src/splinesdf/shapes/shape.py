@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import SupportsIndex
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,27 +18,33 @@ from splinesdf.arclets.points import sampled_loops
 from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.tangents import turns_at_ends
 from splinesdf.arclets.vertices import Vertices, vertices
-from splinesdf.contours.contour import Contour
+from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, Page, as_page, as_points, finite, positive, whole
-from splinesdf.ground.brief import brief, counted, without_caches
+from splinesdf.ground.brief import brief, counted, measured_in, without_caches
+from splinesdf.ground.card import Picture, card
+from splinesdf.ground.doors import public
 from splinesdf.ground.limits import Limits, checked_limits, limits_in_use, using
+from splinesdf.ground.values import by_value
+from splinesdf.shapes import constructors, measures, moves
 from splinesdf.shapes.boundary import kept_loops, some_boundary
 from splinesdf.shapes.loops import Fill, fill_rule
 from splinesdf.shapes.repeats import drawn_once, repeats_note
-from splinesdf.shapes.sources.compiled import compile_curve, point_loops
-from splinesdf.shapes.sources.conics import contour_loops
-from splinesdf.shapes.sources.formula import parse_curve
-from splinesdf.shapes.sources.geojson import polygons_of
-from splinesdf.shapes.sources.nurbs import nurbs_pieces
-from splinesdf.shapes.sources.sections import compile_sections
-from splinesdf.shapes.sources.svg_path import parse_path
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from splinesdf.contours.contour import Contour
+    from splinesdf.fits.fit import FitResult
 
 # Share of the size by which a domain goes beyond the box, if none is given.
 _MARGIN = 0.1
 # Samples a piece. More: a slip of the pen takes all memory; fewer: a circle could look a polygon.
 _MOST_SAMPLES = 1_000_000
+# Samples a piece in a notebook's picture, which is the size of a stamp.
+_PICTURED = 12
 
 
+@by_value
 @without_caches
 @dataclass(frozen=True, eq=False)
 class Shape:
@@ -152,157 +158,33 @@ class Shape:
             page=page,
         )
 
-    @classmethod
-    def from_formula(
-        cls,
-        x: str,
-        y: str,
-        *,
-        t: tuple[float | str, float | str] = (0.0, "2*pi"),
-        fill: str | None = None,
-        name: str = "",
-    ) -> Shape:
-        """One closed curve given by two formulas in ``t``.
+    from_formula = classmethod(constructors.from_formula)
+    from_formulas = classmethod(constructors.from_formulas)
+    from_nurbs = classmethod(constructors.from_nurbs)
+    from_points = classmethod(constructors.from_points)
+    from_contours = classmethod(constructors.from_contours)
+    from_shapely = classmethod(constructors.from_shapely)
+    from_svg_path = classmethod(constructors.from_svg_path)
+    circle = classmethod(constructors.circle)
+    rectangle = classmethod(constructors.rectangle)
+    polygon = classmethod(constructors.polygon)
 
-        The curve is compiled once into polynomial pieces of degree 7 that agree with it to
-        about four units in the last place. Corners are found by bisection.
+    translate = moves.translate
+    scale = moves.scale
+    rotate = moves.rotate
+    union = __or__ = moves.union
+    intersection = __and__ = moves.intersection
+    difference = __sub__ = moves.difference
 
-        Parameters
-        ----------
-        x, y : str
-            Arithmetic in ``t`` with ``+ - * / ^``, ``pi``, ``e`` and the usual functions.
-        t : pair of float or str
-            The parameter's range; formulas without ``t`` are allowed.
-        """
-        return cls.from_pieces([compile_curve(parse_curve(x, y, t))], fill=fill, name=name)
+    def __len__(self) -> int:
+        return self.loop_count
 
-    @classmethod
-    def from_formulas(
-        cls,
-        sections: Iterable[tuple[str, str, tuple[float | str, float | str]]],
-        *,
-        fill: str | None = None,
-        close: bool = False,
-        name: str = "",
-    ) -> Shape:
-        """One closed curve given by several formulas, each for one part of it.
+    def __iter__(self) -> Iterator[list[Floats]]:
+        """The loops, each a list of its pieces' control points."""
+        return iter(moves.loops_of(self))
 
-        Parameters
-        ----------
-        sections : iterable of (x, y, (start, stop))
-            As in `from_formula`. Each section starts where the one before it ended, the first
-            where the last one ended; the parameters of different sections have nothing in common.
-            Make an end of a section wherever the formulas have a corner or bend suddenly.
-        close : bool
-            Close the curve by a straight piece instead of refusing it.
-
-        Raises
-        ------
-        OpenContourError
-            If the sections do not follow one another, or the curve does not end where it starts.
-        InputError
-            If a formula cannot be used; the message names the section.
-        """
-        return cls.from_pieces([compile_sections(sections)], fill=fill, close=close, name=name)
-
-    @classmethod
-    def from_nurbs(
-        cls,
-        control: ArrayLike,
-        *,
-        degree: SupportsIndex = 3,
-        knots: ArrayLike | None = None,
-        weights: ArrayLike | None = None,
-        periodic: bool = False,
-        fill: str | None = None,
-        close: bool = False,
-        name: str = "",
-    ) -> Shape:
-        """One closed B-spline curve, or NURBS curve if there are weights.
-
-        Up to degree 7 without weights the curve is exact, otherwise it is compiled into pieces of
-        degree 7 that agree with it to a few units in the last place.
-
-        Parameters
-        ----------
-        control : array_like, shape (n, 2)
-        degree : int
-            From 1 to 25.
-        knots : array_like, shape (n + degree + 1,), optional
-            Equal steps between repeated ends if not given; see `nurbs_pieces` for other
-            conventions, and for those of periodic curves.
-        weights : array_like, shape (n,), optional
-            Positive; the control points are not multiplied by them.
-        periodic : bool
-            Wrap the control points around to a smooth closed curve.
-        close : bool
-            Close an open curve by a straight piece instead of refusing it.
-
-        Raises
-        ------
-        OpenContourError
-            If the curve does not end where it starts.
-        InputError
-            If the numbers do not make a curve.
-        """
-        pieces = nurbs_pieces(
-            control, degree=degree, knots=knots, weights=weights, periodic=periodic
-        )
-        return cls.from_pieces([pieces], fill=fill, close=close, name=name)
-
-    @classmethod
-    def from_points(
-        cls,
-        points: ArrayLike | Sequence[ArrayLike],
-        *,
-        smooth: bool = False,
-        fill: str | None = None,
-        name: str = "",
-    ) -> Shape:
-        """Closed polygons, or with ``smooth=True`` the periodic C² cubics through their corners.
-
-        Parameters
-        ----------
-        points : array_like, shape (n, 2), or several of these
-            In order; the last is joined to the first. Repeated neighbours are dropped.
-        """
-        return cls.from_pieces(point_loops(points, smooth=smooth), fill=fill, name=name)
-
-    @classmethod
-    def from_contours(cls, contours: Iterable[Contour], *, name: str = "") -> Shape:
-        """The region that closed contours of one level enclose, as those of an offset do.
-
-        So an offset can be offset again. Lines and parabolas are exact, other conics to a few
-        units in the last place.
-        """
-        given = list(contours)
-        y_down = any(getattr(contour, "y_down", False) for contour in given)
-        loops, unit = contour_loops(given), getattr(given[0], "unit", None)
-        page = getattr(given[0], "page", None)
-        return cls.from_pieces(loops, name=name, y_down=y_down, once=False, unit=unit, page=page)
-
-    @classmethod
-    def from_shapely(cls, geometry: object, *, name: str = "") -> Shape:
-        """The union of all polygons of a geometry of Shapely, or of its like.
-
-        It is a GeoJSON object or has a ``__geo_interface__``; points and lines are left out.
-        """
-        found = polygons_of(geometry)
-        (loops, fill), notes = found.united(None), found.notes()
-        return cls.from_pieces(loops, fill=fill, close=True, name=name, notes=notes, once=False)
-
-    @classmethod
-    def from_svg_path(
-        cls, path: str, *, fill: str | None = None, close: bool = False, name: str = ""
-    ) -> Shape:
-        """The subpaths of SVG path data (the ``d`` attribute), coordinates as written.
-
-        Parameters
-        ----------
-        close : bool
-            Close open subpaths by a straight piece, as an SVG fill does, instead of refusing them.
-        """
-        return cls.from_pieces(parse_path(path), fill=fill, close=close, y_down=True, name=name)
+    def __contains__(self, point: ArrayLike) -> bool:
+        return bool(np.all(self.contains(point)))
 
     @property
     def piece_count(self) -> int:
@@ -322,6 +204,11 @@ class Shape:
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
     @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The `box`, by the name that it has in Shapely."""
+        return self.box
+
+    @property
     def size(self) -> float:
         """The larger side of the box."""
         xmin, ymin, xmax, ymax = self.box
@@ -332,6 +219,16 @@ class Shape:
         xmin, ymin, xmax, ymax = self.box
         margin = _MARGIN * self.size + finite(beyond, "beyond")
         return xmin - margin, ymin - margin, xmax + margin, ymax + margin
+
+    @cached_property
+    def area(self) -> float:
+        """The area that is filled, to rounding."""
+        return measures.area(self.boundary)
+
+    @cached_property
+    def length(self) -> float:
+        """The length of the boundary of what is filled, to rounding."""
+        return measures.length(self.boundary)
 
     @cached_property
     def arclets(self) -> Arclets:
@@ -397,3 +294,49 @@ class Shape:
         """
         count = whole(count, "count", least=1, most=_MOST_SAMPLES)
         return sampled_loops(self.control, self.starts, self.loops, count)
+
+    def contains(self, points: ArrayLike) -> Any:
+        """Whether points (..., 2) are inside; those on the boundary are not: (...,) of bool."""
+        return self.signed_distance(points) < 0.0
+
+    def signed_distance(self, points: ArrayLike, *, max_distance: float | None = None) -> Floats:
+        """`splinesdf.signed_distance` of this shape."""
+        distance: Floats = public("signed_distance")(self, points, max_distance=max_distance)
+        return distance
+
+    def fit(self, tolerance: float | None = None, **options: Any) -> FitResult:
+        """`splinesdf.fit` of this shape."""
+        result: FitResult = public("fit")(self, tolerance, **options)
+        return result
+
+    def offset(self, distances: ArrayLike | None = None, **options: Any) -> list[Contour]:
+        """`splinesdf.offset` of this shape."""
+        contours: list[Contour] = public("offset")(self, distances, **options)
+        return contours
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the shape on axes, the current ones unless given, and return them."""
+        axes: Axes = public("plot").drawn(self, ax)
+        return axes
+
+    def _repr_html_(self) -> str:
+        xmin, ymin, xmax, ymax = self.box
+        figures = {
+            "loops": f"{self.loop_count:,} ({self.fill})",
+            "pieces": f"{self.piece_count:,}",
+            "box": f"{xmax - xmin:.6g} × {ymax - ymin:.6g}{measured_in(self.unit)}",
+        }
+        outlines = self.sample(_PICTURED)
+        return card(
+            "Shape", self.name, figures, Picture(outlines, self.box, self.fill, self.y_down)
+        )
+
+
+def check_shape(value: Shape) -> Shape:
+    """The shape, or an `InputError` for anything else."""
+    if not isinstance(value, Shape):
+        raise InputError(
+            f"expected a Shape, got {type(value).__name__}: read one by splinesdf.read, or make it "
+            "by Shape.from_points"
+        )
+    return value

@@ -25,6 +25,7 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.ground.values import by_value
 
 # Corners of the triangles S E N W, from the cell's center in cells.
 _HALF = 0.5
@@ -78,6 +79,7 @@ class Operator:
         return result
 
 
+@by_value
 @dataclass(frozen=True, eq=False)
 class Element:
     """A family of B-splines, one a cell and one for each cell of a ring around the domain.

@@ -11,7 +11,6 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, Ints, whole
 from splinesdf.meshes.grid import Grid
 from splinesdf.spaces.element import Element
@@ -142,11 +141,6 @@ def tensor_ordinates(mesh: Grid, coefficients: Floats) -> Floats:
     [Wang2014] Section 2, in the form: values at cell centers, interpolated linearly to the grid
     lines, ``(h_i c_{i-1} + h_{i-1} c_i) / (h_{i-1} + h_i)``.
     """
-    m, n = mesh.shape
-    if coefficients.shape != (m + 2, n + 2):
-        raise InputError(
-            f"expected coefficients of shape {(m + 2, n + 2)}, got {coefficients.shape}"
-        )
     to_x = _to_lines(coefficients, ghosted_sides(mesh.x))  # (m + 1, n + 2)
     to_y = _to_lines(coefficients.T, ghosted_sides(mesh.y)).T  # (m + 2, n + 1)
     vertex = _to_lines(to_x.T, ghosted_sides(mesh.y)).T  # (m + 1, n + 1)

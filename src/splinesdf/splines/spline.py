@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,11 +13,14 @@ from numpy.typing import ArrayLike
 from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import nested
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Bools, Floats, Ints, as_floats, as_points
-from splinesdf.ground.blocks import in_blocks, processors
+from splinesdf.ground.arrays import Bools, Floats, as_floats, as_points
+from splinesdf.ground.blocks import in_blocks
 from splinesdf.ground.brief import brief, counted, without_caches
+from splinesdf.ground.card import Picture, card
+from splinesdf.ground.doors import public
+from splinesdf.ground.values import by_value
 from splinesdf.meshes import Box, Grid, Mesh
-from splinesdf.meshes.lattice import DistanceGrid, node_count
+from splinesdf.meshes.lattice import DistanceGrid, Nodes, grid_nodes
 from splinesdf.meshes.mesh import check_domain, frames
 from splinesdf.shapes.shape import Shape
 from splinesdf.spaces.element import Element
@@ -30,15 +32,18 @@ from splinesdf.splines.archive import (
     Archive,
     archive_dict,
     archive_from,
-    read_archive,
     write_archive,
 )
 from splinesdf.splines.border import border_of, extend_lattice
 from splinesdf.splines.finite_elements import skfem_basis
 from splinesdf.splines.level_sets import contours
+from splinesdf.splines.nodes import values_at_nodes
 from splinesdf.splines.provenance import Provenance
 from splinesdf.splines.tables import Border
 from splinesdf.splines.triangles import Triangles, quadratic_triangles
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 # After the first step along the gradient, which an exact distance would make the last, so many
 # Newton steps bring the point onto the zero level set. Each squares what is left of the error.
@@ -50,6 +55,7 @@ _NODES = 8
 Outside = Literal["extend", "nan"]
 
 
+@by_value
 @without_caches
 @dataclass(frozen=True, eq=False)
 class SplineSDF:
@@ -128,14 +134,19 @@ class SplineSDF:
         return self._evaluate(array, 0, outside)[0].reshape(array.shape[:-1])
 
     def grid(
-        self, nx: int, ny: int, *, domain: Box | None = None, outside: Outside = "extend"
+        self,
+        nx: Nodes,
+        ny: int | None = None,
+        *,
+        domain: Box | None = None,
+        outside: Outside = "extend",
     ) -> DistanceGrid:
         """Values at the nodes of a grid, its border included, quicker than point by point.
 
         Parameters
         ----------
         nx, ny : int
-            Nodes each way, at least 2.
+            Nodes each way, at least 2: two numbers, a pair of them, or one for both.
         domain : (xmin, ymin, xmax, ymax), optional
             The spline's own unless given.
         outside : {"extend", "nan"}
@@ -146,31 +157,14 @@ class SplineSDF:
             As of `splinesdf.signed_distance_grid`: ``distance[j, i]`` is the value at
             (x[i], y[j]), to rounding.
         """
-        from splinesdf.spaces.kernels.evaluation import (
-            evaluate_lattice,  # Numba loads only when used
-        )
-
         _check_outside(outside)
         box = self.domain if domain is None else check_domain(domain)
-        x, y = (
-            np.linspace(box[0], box[2], node_count(nx, "nx")),
-            np.linspace(box[1], box[3], node_count(ny, "ny")),
-        )
+        x, y = grid_nodes(nx, ny, box)
         few = len(x) * len(y) < _NODES * len(self.ordinates)
         if few or self.element.power_form is None:
-            nodes = np.stack(np.meshgrid(x, y), axis=-1)
-            return DistanceGrid(x, y, self(nodes, outside=outside))
-        columns, rows = self._nodes_of_cells(x, 0), self._nodes_of_cells(y, 1)
-        distance = np.full((len(y), len(x)), np.nan)
-
-        local_x, local_y = x - self.domain[0], y - self.domain[1]
-
-        def work(part: slice) -> None:
-            cells = self._frames[part], self._table[part], columns[part], rows[part]
-            evaluate_lattice(*cells, local_x, local_y, distance)
-
-        count = len(self.ordinates)
-        in_blocks(count, work, size=min(4096, math.ceil(count / (4 * processors()))))
+            points = np.stack(np.meshgrid(x, y), axis=-1)
+            return DistanceGrid(x, y, self(points, outside=outside))
+        distance = values_at_nodes(self.mesh, self._frames, self._table, x, y)
         if outside == "extend":
             extend_lattice(self.domain, self._border, x, y, distance)
         return DistanceGrid(x, y, distance)
@@ -244,7 +238,7 @@ class SplineSDF:
         """Whether the value is negative, shape (..., 2) -> (...,)."""
         return np.asarray(self(points, outside=outside) < 0.0)
 
-    def contours(self, level: float) -> list[Contour]:
+    def contours(self, level: float = 0.0) -> list[Contour]:
         """The level set ``s = level`` as chains of conic arcs, lower values on their left.
 
         Closed and with a continuous tangent, but for those that leave the domain (``closed`` is
@@ -257,6 +251,25 @@ class SplineSDF:
             unit, page = self.shape.unit, self.shape.page
             found = [replace(contour, unit=unit, page=page) for contour in found]
         return nested(found)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the values in colors on axes, the current ones unless given, and return them."""
+        axes: Axes = public("plot").drawn(self, ax)
+        return axes
+
+    def _repr_html_(self) -> str:
+        return self._card("SplineSDF")
+
+    def _card(self, kind: str) -> str:
+        xmin, ymin, xmax, ymax = self.domain
+        figures = {
+            "cells": f"{len(self.ordinates):,} ({self.mesh.description})",
+            "domain": f"{xmax - xmin:.6g} × {ymax - ymin:.6g}",
+            "errors": "not known" if self.made is None else self.made.errors,
+        }
+        zero = self.contours() if self.element.degree == 2 else []
+        picture = Picture([c.points() for c in zero], self.domain, "nonzero", self.y_down)
+        return card(kind, self.name, figures, picture)
 
     def triangles(self) -> Triangles:
         """The spline as a conforming mesh of quadratic Lagrange triangles, exact to rounding.
@@ -364,24 +377,10 @@ class SplineSDF:
 
         extend(np.array(self.domain), self._border, evaluated)
 
-    def _nodes_of_cells(self, nodes: Floats, axis: int) -> Ints:
-        """The range of increasing nodes in each cell; the last cells have the border's too."""
-        boxes, corners = self.mesh.boxes, self.mesh.corners
-        first = np.searchsorted(nodes, boxes[:, axis], side="left")
-        end = np.searchsorted(nodes, boxes[:, axis + 2], side="left")
-        last = corners[:, axis + 2] == corners[:, axis + 2].max()
-        end[last] = np.searchsorted(nodes, self.domain[axis + 2], side="right")
-        return np.column_stack([first, end])
-
 
 def _check_outside(outside: str) -> None:
     if outside not in ("extend", "nan"):
         raise InputError(f"expected outside 'extend' or 'nan', got {outside!r:.60}")
-
-
-def load(path: str | os.PathLike[str]) -> SplineSDF:
-    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one."""
-    return SplineSDF(*read_archive(path))
 
 
 def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:

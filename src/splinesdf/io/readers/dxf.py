@@ -150,8 +150,7 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
                 for pieces in EDGES[kind](entity):
                     count += len(pieces)
                     check_count(count)
-                    if pieces:
-                        yield _Edge(kind, seen.mapped(pieces))
+                    yield _Edge(kind, seen.mapped(pieces))
             except Flat as reason:
                 left_out[f"{kind} ({reason})"] += 1
 

@@ -108,7 +108,7 @@ def _nested(tokens: list[str], at: int) -> tuple[list[Any], int]:
     at = _expect(tokens, at, "(")
     stack: list[list[Any]] = [[]]
     point: list[float] = []
-    while stack:
+    while True:  # up to the last bracket, or there is no token to take
         token, at = _take(tokens, at), at + 1
         if token == "(":
             stack.append([])
@@ -127,7 +127,6 @@ def _nested(tokens: list[str], at: int) -> tuple[list[Any], int]:
                 point.append(float(token))
             except ValueError as error:
                 raise InputError(f"expected a number, got {token[:30]!r}") from error
-    raise AssertionError  # the loop ends at the last bracket
 
 
 def _take(tokens: list[str], at: int) -> str:

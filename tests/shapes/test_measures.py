@@ -1,0 +1,116 @@
+"""Area and length of what is filled, against closed forms and against polygons by Shapely."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from shapely.geometry import Polygon
+
+import splinesdf as ss
+from tests.named_shapes import gamma
+
+ELLIPSE = (3.0, 1.0)
+
+
+def ellipse() -> ss.Shape:
+    return ss.Shape.from_formula("3*cos(t)", "sin(t)")
+
+
+def disk(radius: float) -> ss.Shape:
+    return ss.Shape.circle((0.0, 0.0), radius)
+
+
+def perimeter(a: float, b: float) -> float:
+    """Of an ellipse, by the arithmetic-geometric mean; to rounding."""
+    x, y, total, power = a, b, a * a - (a * a - b * b) / 2.0, 1.0
+    while x - y > 1e-15 * a:
+        x, y, total, power = (
+            (x + y) / 2,
+            math.sqrt(x * y),
+            total - power * (x - y) ** 2 / 4,
+            2 * power,
+        )
+    return 2.0 * math.pi * total / x
+
+
+CASES = {
+    # shape, area, length
+    "disk": (lambda: ss.Shape.circle((1.0, 2.0), 0.5), math.pi / 4, math.pi),
+    "ellipse": (ellipse, 3.0 * math.pi, perimeter(*ELLIPSE)),
+    "rectangle": (lambda: ss.Shape.rectangle(-1, 2, 3, 5), 12.0, 14.0),
+    # (1 + cos t) (cos t, sin t): its cusp is where the speed vanishes
+    "cardioid": (
+        lambda: ss.Shape.from_formula("(1+cos(t))*cos(t)", "(1+cos(t))*sin(t)"),
+        1.5 * math.pi,
+        8.0,
+    ),
+    "astroid": (lambda: ss.Shape.from_formula("cos(t)^3", "sin(t)^3"), 3 * math.pi / 8, 6.0),
+    "far": (lambda: ss.Shape.rectangle(1e8, 1e8, 1e8 + 2, 1e8 + 3), 6.0, 10.0),
+    # two disks of which one lies in the other count once; a frame is what is between
+    "nested": (
+        lambda: ss.Shape.circle((0, 0), 2) | ss.Shape.circle((0, 0), 1),
+        4 * math.pi,
+        4 * math.pi,
+    ),
+    "frame": (
+        lambda: ss.Shape.circle((0, 0), 2) - ss.Shape.circle((0, 0), 1),
+        3 * math.pi,
+        6 * math.pi,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_closed_forms(name: str) -> None:
+    make, area, length = CASES[name]
+    shape = make()
+    assert shape.area == pytest.approx(area, rel=2e-14)
+    assert shape.length == pytest.approx(length, rel=2e-14)
+
+
+CORNER = st.tuples(*2 * [st.floats(-10, 10, allow_subnormal=False)])
+
+
+@given(st.lists(CORNER, min_size=3, max_size=8, unique=True))
+def test_polygons_as_shapely_measures_them(corners: list[tuple[float, float]]) -> None:
+    other = Polygon(corners)
+    try:
+        shape = ss.Shape.from_points(corners)
+        shape.boundary  # noqa: B018
+    except ss.InputError:  # nothing filled, to rounding
+        assert other.area < 1e-6 or not other.is_valid
+        return
+    if other.is_valid:
+        assert shape.area == pytest.approx(other.area, abs=1e-9)
+        assert shape.length == pytest.approx(other.length, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["gamma1", "gamma2", "gamma3"])
+def test_curves_as_many_chords(name: str) -> None:
+    shape = gamma(name)
+    (line,) = shape.sample(4000)
+    other = Polygon(line)
+    times = 2.0 if name == "gamma3" else 1.0  # it is traced twice, and bounds its inside once
+    assert times * shape.area == pytest.approx(other.area, rel=1e-7)
+    assert times * shape.length == pytest.approx(other.length, rel=1e-7)
+
+
+def test_contains_is_the_sign_of_the_distance() -> None:
+    shape = ss.Shape.circle((1.0, 2.0), 0.5)
+    points = np.array([[1.0, 2.0], [1.4, 2.0], [1.6, 2.0], [np.nan, 0.0]])
+    assert shape.contains(points).tolist() == [True, True, False, False]
+    assert (1.0, 2.0) in shape
+    assert (3.0, 2.0) not in shape
+    assert shape.bounds == shape.box
+
+
+def test_loops_are_iterated_over() -> None:
+    shape = ss.example("part")
+    assert len(shape) == len(list(shape)) == 9
+    assert [len(loop) for loop in shape] == np.diff(shape.loops).tolist()
+    for loop in shape:
+        assert np.array_equal(loop[0][0], loop[-1][-1])
