@@ -149,3 +149,27 @@ def test_blocks_nested_deeper_than_calls_may_be_are_refused(tmp_path: Path) -> N
     with pytest.raises(ss.InputError, match="blocks that are not nested so deep") as caught:
         read(document, tmp_path)
     assert_one_line(caught.value, "drawing.dxf")
+
+
+@pytest.mark.parametrize("block", [{}, {"10": "1e999"}])
+@pytest.mark.parametrize("insert", [{"10": "-inf"}, {"41": "1e308"}, {"41": "nan"}, {}])
+def test_blocks_inserted_nowhere_are_named(
+    tmp_path: Path, block: dict[str, str], insert: dict[str, str]
+) -> None:
+    """Once with a warning of NumPy, which is an error for who asks for that."""
+    where = {"10": "9", "20": "9", "30": "0", **insert}
+    base = {"10": "8", "20": "0", "30": "0", **block}
+    parts = (
+        "0 SECTION 2 BLOCKS 0 BLOCK 8 0 2 b",
+        *(f"{code} {value}" for code, value in base.items()),
+        "0 CIRCLE 8 0 10 8 20 0 40 5 0 ENDBLK 0 ENDSEC 0 SECTION 2 ENTITIES",
+        "0 CIRCLE 8 0 10 0 20 0 40 1 0 INSERT 8 0 2 b",
+        *(f"{code} {value}" for code, value in where.items()),
+        "0 ENDSEC 0 EOF",
+    )
+    tags = " ".join(parts).split(" ")
+    (tmp_path / "a.dxf").write_text("\n".join(tags) + "\n")
+    shape = ss.read(tmp_path / "a.dxf")
+    nowhere = bool(block or insert)
+    assert_allclose(np.abs(areas(shape)).max(), (1 if nowhere else 25) * math.pi)
+    assert any("INSERT" in one or "CIRCLE" in one for one in shape.notes) == nowhere

@@ -365,3 +365,21 @@ def test_a_damaged_drawing_is_refused_in_words_that_can_be_printed(tmp_path: Pat
     with pytest.raises(ss.InputError) as caught:
         ss.read(tmp_path / "a.dxf")
     assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize("limit", [f.name for f in dataclasses.fields(ss.Limits)])
+def test_a_limit_beyond_all_files_costs_nothing(tmp_path: Path, limit: str) -> None:
+    file = tmp_path / "a.svgz"
+    file.write_bytes(gzip.compress(b"<svg><path d='M0 0H1V1Z'/></svg>", mtime=0))
+    most = 300 if limit == "nesting" else 2**53
+    shape = ss.read(file, limits=ss.Limits(**{limit: most}))
+    assert ss.signed_distance(shape, (1.0, 0.5)) == 0.0
+    with pytest.raises(ss.InputError, match=f"the limit '{limit}' from 1 to {most:,}, got"):
+        ss.Limits(**{limit: 1e30})
+
+
+def test_a_file_that_is_too_long_is_told_nothing_else(tmp_path: Path) -> None:
+    _refused(tmp_path / "a.wkt", "POLYGON((0 0,1 0,0 1))", r"^a.wkt: expected a file of up to 9 b",
+             limits=ss.Limits(bytes=9))  # fmt: skip
+    _refused(tmp_path / "a.json", '{"x": "cos(t)", "y": "sin(t)"}', "up to 9 pieces of all form",
+             limits=ss.Limits(formulas=9))  # fmt: skip

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from shapely import contains_xy, from_wkt
 
 import splinesdf as ss
 from tests.reading import areas, assert_one_line, corners
@@ -181,6 +182,9 @@ def test_degrees_and_heights_are_noted(read: Read) -> None:
         ("a.wkt", "POLYGON " + "(" * 200, "up to 100 brackets"),
         ("a.wkt", "POLYGON ((0 0, 1 0, 1 1)) ?", "character 26"),
         ("a.wkt", "POINT (1 2)", "expected polygons, got 1 POINT"),
+        ("a.wkt", "POLYGON((0 0,4 0,4 3 0 3,0 0))", "got 2 and 4: is a comma missing"),
+        ("a.wkt", "MULTIPOLYGON(EMPTY,EMPTY)", "expected polygons, got none"),
+        ("a.geojson", '{"type": "Polygon", "coordinates": [[[1, true]]]}', "two numbers"),
     ],
 )
 def test_what_is_no_map_is_refused_in_one_line(
@@ -189,6 +193,26 @@ def test_what_is_no_map_is_refused_in_one_line(
     with pytest.raises(ss.InputError, match=expected) as caught:
         read(name, text)
     assert_one_line(caught.value, name)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "MULTIPOLYGON(EMPTY, ((0 0,4 0,4 3,0 3,0 0)), EMPTY)",
+        "POLYGON((0 0,4 0,4 3,0 3,0 0), EMPTY)",
+        "MULTIPOLYGON(((0 0,4 0,4 3,0 3,0 0), EMPTY, (1 1,2 1,2 2,1 1)))",
+        "POLYGONZ((0 0 1,4 0 1,4 3 1,0 3 1,0 0 1))",
+        "GEOMETRYCOLLECTIONZ(POINTZ(1 1 1),POLYGONZ((0 0 1,4 0 1,4 3 1,0 3 1,0 0 1)))",
+    ],
+)
+def test_empty_parts_and_joined_words_of_wkt_are_read_as_geos_reads_them(
+    read: Read, text: str
+) -> None:
+    found = from_wkt(text)
+    points = np.random.default_rng(4).uniform((-1, -1), (5, 4), (500, 2))
+    inside = contains_xy(found, *points.T)
+    assert inside.any()
+    assert ((ss.signed_distance(read("a.wkt", text), points) < 0.0) == inside).all()
 
 
 @pytest.mark.parametrize("ending", ["geojson", "wkt", "csv"])

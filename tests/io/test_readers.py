@@ -154,6 +154,7 @@ def test_blank_lines_separate_loops(table) -> None:
         ("1,x\n2,3\n", "line 1: expected a number, got 'x'"),
         ("x,y\nz,w\n", "line 2: expected a number, got 'z'"),
         ("0,0\n1,\n", "line 2: expected a number, got ''"),
+        ("0,0\n4_0,1\n1,1\n", "line 2: expected a number, got '4_0'"),
         ("1,5;2.5\n1;2,5,3\n", "line 2: expected a number, got '2,5,3'"),
         ("0,0\n1,1\n0,1e999", "line 3: expected finite numbers"),
         ("0,0\nnan,1\n0,1", "line 2: expected finite numbers"),

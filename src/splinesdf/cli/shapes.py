@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -159,11 +160,14 @@ def load_fit(path: str, reading: Mapping[str, Any]) -> ss.SplineSDF:
 
 
 def check_outputs(source: str, *outputs: str | None) -> None:
-    """Refuse, before the work, files that cannot be written or that are its source."""
-    for output in outputs:
-        if output is None:
-            continue
+    """Refuse, before the work, files that cannot be written, are its source, or are there twice."""
+    seen = set[str]()
+    for output in filter(None, outputs):
         check_target(output)
+        place = os.path.realpath(output)
+        if place in seen:
+            raise ss.InputError(f"expected different files, got {output!r} twice: name another")
+        seen.add(place)
         try:
             lost = Path(output).samefile(source)
         except (OSError, ValueError):  # one of them does not exist

@@ -173,11 +173,16 @@ def _spline(entity: Any) -> Iterator[list[Floats]]:
     control = np.array([tuple(point) for point in tool.control_points], dtype=np.float64)
     _check_level(control)
     weights = np.array(tool.weights(), dtype=np.float64)
+    knots = np.array(tool.knots(), dtype=np.float64)
+    # ezdxf rounds knots to the file's tolerance, which may be much of their range.
+    own = np.array(entity.knots, dtype=np.float64)
+    if len(own) == len(knots) and np.all(np.diff(own) >= 0.0):
+        knots = own
     try:
         pieces = nurbs_pieces(
             control[:, :2],
             degree=int(tool.degree),
-            knots=np.array(tool.knots(), dtype=np.float64),
+            knots=knots,
             weights=weights if len(weights) else None,
         )
     except InputError as error:

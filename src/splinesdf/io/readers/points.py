@@ -202,10 +202,17 @@ def _is_word(field: str) -> bool:
 def is_number(field: str) -> bool:
     """Whether a text is a number."""
     try:
-        float(field)
+        _number(field)
     except ValueError:
         return False
     return True
+
+
+def _number(field: str) -> float:
+    """A number as files have it: not 4_0, which is 40 in Python only."""
+    if "_" in field:
+        raise ValueError("not a number")
+    return float(field)
 
 
 def _point(
@@ -222,7 +229,7 @@ def _point(
         raise InputError(f"line {line}: expected {max(places) + 1} columns, got {len(fields)}")
     chosen = [fields[k] for k in places]
     try:
-        x, y = float(chosen[0]), float(chosen[1])
+        x, y = _number(chosen[0]), _number(chosen[1])
     except ValueError:
         shown = chosen[1 if is_number(chosen[0]) else 0]
         raise InputError(f"line {line}: expected a number, got {_short(shown)}") from None
