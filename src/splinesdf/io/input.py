@@ -51,7 +51,7 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     fill : {"nonzero", "evenodd"}, optional
         Instead of the file's rule, of a drawing that of each element. Default: what the file says,
         else nonzero, or evenodd for lines. And unless it is given, a contour that is drawn several
-        times counts once.
+        times counts once, but for a drawing's elements under nonzero: these are as they are shown.
     close : bool
         Close open lines by a straight piece instead of refusing them. Those of a drawing are
         joined first where their ends meet, within 1e-6 of its size. (A fill is always closed.)
