@@ -67,17 +67,43 @@ def side_test(shape: ss.Shape) -> Answer:
     return lambda points: np.where(shapely.contains_xy(region, points), -1.0, 1.0)
 
 
-def gpytoolbox_aabb(asked: Question) -> Answer:
-    from gpytoolbox import squared_distance_precompute
-
-    lines = rings(asked.shape, DEVIATION * asked.shape.size)
+def sides_of(shape: ss.Shape) -> tuple[np.ndarray, np.ndarray]:
+    """The polylines' corners (n, 2), and the indices (n, 2) of the ends of their sides."""
+    lines = rings(shape, DEVIATION * shape.size)
     corners = np.concatenate([line[:-1] for line in lines])
     starts = np.cumsum([0] + [len(line) - 1 for line in lines])
     ends = np.arange(1, len(corners) + 1)
     ends[starts[1:] - 1] = starts[:-1]
-    tree = squared_distance_precompute(corners, np.stack([np.arange(len(corners)), ends], -1))
+    return corners, np.stack([np.arange(len(corners)), ends], -1)
+
+
+def gpytoolbox_aabb(asked: Question) -> Answer:
+    from gpytoolbox import squared_distance_precompute
+
+    tree = squared_distance_precompute(*sides_of(asked.shape))
     side = side_test(asked.shape)
     return lambda points: np.sqrt(tree.squared_distance(points)[0]) * side(points)
+
+
+def fcpw_bvh(asked: Question) -> Answer:
+    """In single precision, as it is made; distances come one by one from its list."""
+    import fcpw
+
+    corners, ends = sides_of(asked.shape)
+    scene = fcpw.scene_2D()
+    scene.set_object_count(1)
+    scene.set_object_vertices(np.asfortranarray(corners, dtype=np.float32), 0)
+    scene.set_object_line_segments(np.asfortranarray(ends, dtype=np.int32), 0)
+    scene.build(fcpw.aggregate_type.bvh_surface_area, True)
+    side = side_test(asked.shape)
+
+    def answer(points: np.ndarray) -> np.ndarray:
+        found = fcpw.interaction_2D_list()
+        reach = np.full(len(points), np.inf, dtype=np.float32)
+        scene.find_closest_points(np.asfortranarray(points, dtype=np.float32), reach, found)
+        return np.array([one.d for one in found]) * side(points)
+
+    return answer
 
 
 def shapely_ring(asked: Question) -> Answer:
@@ -169,6 +195,7 @@ def _rows(asked: Question) -> tuple[tuple[int, int], Any]:
 # What gets a peer ready, and how many points apart the ones are that it is given: some are slow.
 PEERS: dict[str, tuple[Callable[[Question], Answer | None], int]] = {
     "gpytoolbox AABB": (gpytoolbox_aabb, 5),
+    "FCPW": (fcpw_bvh, 5),
     "shapely ring": (shapely_ring, 331),
     "shapely STRtree": (shapely_tree, 19),
     "kd-tree of 1e5": (kd_tree, 19),

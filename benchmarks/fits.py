@@ -1,6 +1,6 @@
 """Fits: leaves, errors, proofs, times; beside the paper's method, other operators, random points.
 
-Run from the repository's root, with the ``test`` extra and fontTools installed:
+Run from the repository's root, with the ``test`` or the ``bench`` extra installed:
 
     python -m benchmarks.fits [--tables ABCDE] [--points 1000000] [--shapes 12]
 
@@ -30,6 +30,7 @@ from typing import Any
 import numpy as np
 
 import splinesdf as ss
+from benchmarks.tables import OURS, Entry, clock
 from splinesdf.errors import ToleranceNotReached
 from splinesdf.fits.fit import FitResult, fit_steps
 from splinesdf.meshes import Box
@@ -99,11 +100,38 @@ def seconds(runs: Sequence[Callable[[], object]]) -> tuple[list[float], int]:
     count = 0
     while count == 0 or (count < ROUNDS and max(map(max, times)) < SLOW):
         for run, mine in zip(runs, times, strict=True):
-            began = time.perf_counter()
+            began = clock()
             run()
-            mine.append(time.perf_counter() - began)
+            mine.append(clock() - began)
         count += 1
     return [statistics.median(mine) for mine in times], count
+
+
+@dataclass(frozen=True)
+class Leaves:
+    """A fit with its proof, and seconds with and without it; lengths are shares of the unit."""
+
+    result: FitResult
+    error: float
+    bound: float
+    proved: float
+    believed: float
+    runs: int
+    unproved: int  # leaves of the fit without a proof
+
+    @property
+    def per_leaf(self) -> float:
+        return self.result.evaluations / self.result.cells
+
+
+def leaves(case: Case, share: float) -> Leaves:
+    """One line of table A."""
+    result = case.fit(share)  # also warms up
+    unproved = case.fit(share, certify=False)
+    runs = [partial(case.fit, share), partial(case.fit, share, certify=False)]
+    (proved, believed), count = seconds(runs)
+    error, bound = result.error / case.unit, (result.bound or math.nan) / case.unit
+    return Leaves(result, error, bound, proved, believed, count, unproved.cells)
 
 
 def table_a() -> None:
@@ -123,16 +151,12 @@ def table_a() -> None:
     cases += [(case, (1e-2, 1e-3)) for case in others]
     for case, shares in cases:
         for share in shares:
-            result = case.fit(share)  # also warms up
-            unproved = case.fit(share, certify=False)
-            runs = [partial(case.fit, share), partial(case.fit, share, certify=False)]
-            (proved, believed), count = seconds(runs)
-            error, bound = result.error / case.unit, (result.bound or math.nan) / case.unit
+            row = leaves(case, share)
             print(
-                f"{case.name:12} {share:9.0e} {error:9.3e} {bound:9.3e} {bound / error:7.4f} "
-                f"{result.cells:8} {result.evaluations:12} "
-                f"{result.evaluations / result.cells:9.2f} {proved:8.3f} {believed:9.3f} "
-                f"{proved / believed:6.2f} {count:5} {unproved.cells:8}",
+                f"{case.name:12} {share:9.0e} {row.error:9.3e} {row.bound:9.3e} "
+                f"{row.bound / row.error:7.4f} {row.result.cells:8} {row.result.evaluations:12} "
+                f"{row.per_leaf:9.2f} {row.proved:8.3f} {row.believed:9.3f} "
+                f"{row.proved / row.believed:6.2f} {row.runs:5} {row.unproved:8}",
                 flush=True,
             )
 
@@ -159,13 +183,17 @@ def by_cells(result: FitResult) -> tuple[bool, int]:
     return result.stopped != "reached", result.cells
 
 
+def on_grid(case: Case, share: float, n: int) -> FitResult:
+    """The uniform grid of n x n cells."""
+    options: dict[str, Any] = {"space": "uniform", "operator": "W", "domain": case.domain}
+    return next(fit_steps(case.shape, tolerance=share, start=(n, n), **options))
+
+
 def bisected(case: Case, share: float, odd: int) -> FitResult:
     """The coarsest of the grids whose n is odd, or even, or the last."""
 
     def at(half: int) -> FitResult:
-        n = 2 * half - odd
-        options: dict[str, Any] = {"space": "uniform", "operator": "W", "domain": case.domain}
-        return next(fit_steps(case.shape, tolerance=share, start=(n, n), **options))
+        return on_grid(case, share, 2 * half - odd)
 
     half = 1
     while (found := at(half)).stopped != "reached":
@@ -183,29 +211,51 @@ def bisected(case: Case, share: float, odd: int) -> FitResult:
     return found
 
 
+METHODS: dict[str, Callable[[Case, float], FitResult]] = {
+    "hierarchical S": lambda case, share: case.fit(share),
+    "hierarchical W": lambda case, share: case.fit(share, operator="W"),
+    "tensor W": partial(given_up, space="tensor", operator="W"),
+    "uniform W": uniform,
+}
+
+
+def entries(case: Case, share: float) -> list[Entry]:
+    """The paper's grids beside our default, for the report; each method is run once."""
+    result = []
+    for method, run in METHODS.items():
+        began = clock()
+        found = run(case, share)
+        spent = [clock() - began]
+        names = [OURS if method == "hierarchical S" else method]
+        if run is uniform:  # most of it went into looking for the grid
+            began = clock()
+            on_grid(case, share, round(math.sqrt(found.cells)))
+            spent.append(clock() - began)
+            names.append("uniform W, the grid known")
+        missed = "" if found.stopped == "reached" else f"gave up beyond {MOST:,} cells"
+        title, cells = f"{case.name}, {share:.0e}", f"{found.cells:,} cells"
+        for name, took in zip(names, spent, strict=True):
+            result.append(Entry(title, name, took, found.error, cells, missed))
+    return result
+
+
 def table_b() -> None:
     head(
         f"B. the paper's grids at the same true error (given up beyond {MOST:,} cells)",
         "curve    tolerance  method            cells     error    ratio  seconds",
     )
-    methods: dict[str, Callable[[Case, float], FitResult]] = {
-        "hierarchical S": lambda case, share: case.fit(share),
-        "hierarchical W": lambda case, share: case.fit(share, operator="W"),
-        "tensor W": partial(given_up, space="tensor", operator="W"),
-        "uniform W": uniform,
-    }
     for name in ("gamma1", "gamma2"):
         case = curve(name)
         for share in (1e-2, 5e-3, 2e-3, 1e-3, 3e-4, 1e-4):
-            leaves = case.fit(share).cells
-            for method, run in methods.items():
-                began = time.perf_counter()
+            least = case.fit(share).cells
+            for method, run in METHODS.items():
+                began = clock()
                 result = run(case, share)
-                took = time.perf_counter() - began
+                took = clock() - began
                 missed = "" if result.stopped == "reached" else "  gave up"
                 print(
                     f"{name:8} {share:9.0e}  {method:14} {result.cells:8} {result.error:9.2e} "
-                    f"{result.cells / leaves:8.2f} {took:8.2f}{missed}",
+                    f"{result.cells / least:8.2f} {took:8.2f}{missed}",
                     flush=True,
                 )
 
