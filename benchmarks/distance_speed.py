@@ -7,7 +7,8 @@ Run from the repository's root; peers that are not installed are named and left 
 
 For each number of cores one process is bound to so many. In it every contestant answers once a
 round, one after the other, and the median of its rounds is shown: what else the machine does hits
-all alike. On one core seconds are those of the CPU, on more those of the clock. Making trees and polylines is timed apart ("ready"). Slow peers are given fewer points.
+all alike. On one core seconds are those of the CPU, on more those of the clock. Making trees is
+timed apart ("ready"). Slow peers are given fewer points.
 Peers that know polylines only get one within 1e-6 of the shape's size; errors are shares of the
 size, against ``ss.signed_distance``. Grids are those of the same domain and the same nodes.
 """
@@ -26,7 +27,7 @@ from statistics import median
 import numpy as np
 
 import splinesdf as ss
-from benchmarks.distance_peers import PEERS, Answer, Question, limacon
+from benchmarks.distance_peers import DEVIATION, PEERS, Answer, Question, limacon, rings
 from benchmarks.tables import OURS, Entry, clock
 
 MARGIN = 0.1
@@ -74,13 +75,14 @@ def question(shape: ss.Shape, count: int, grid: bool) -> Question:
     xmin, ymin, xmax, ymax = shape.box
     grown = MARGIN * shape.size
     domain = (xmin - grown, ymin - grown, xmax + grown, ymax + grown)
+    lines = rings(shape, DEVIATION * shape.size)
     if not grid:
         rng = np.random.default_rng(1)
-        return Question(shape, rng.uniform(domain[:2], domain[2:], (count, 2)), None, domain)
+        return Question(shape, rng.uniform(domain[:2], domain[2:], (count, 2)), None, domain, lines)
     side = round(count**0.5)
     x, y = np.linspace(*domain[::2], side), np.linspace(*domain[1::2], side)
     nodes = np.stack(np.meshgrid(x, y), -1).reshape(-1, 2)
-    return Question(shape, nodes, (side, side), domain)
+    return Question(shape, nodes, (side, side), domain, lines)
 
 
 def ours(asked: Question) -> Answer:

@@ -90,7 +90,8 @@ def nodes(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 def ours(name: str, spline: SplineSDF) -> Method:
     spline(np.zeros((1, 2)))  # makes its tables
-    tables = [spline._powers, *(spline._ways if isinstance(spline.mesh, Quadtree) else ())]
+    ways = spline._space._ways if isinstance(spline.mesh, Quadtree) else ()
+    tables = [spline._table, *ways]
     size = f"{len(spline.ordinates):,} cells"
     return Method(
         name, size, sum(t.nbytes for t in tables), spline, lambda p: spline.value_and_gradient(p)

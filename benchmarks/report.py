@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -108,9 +109,7 @@ def draw(section: Section, folder: Path, name: str) -> list[str]:
     figure.legend(loc="outside upper center", ncols=4, frameon=False)
     names = [f"{name}-ratios.svg"]
     save_figure(figure, folder / names[0])
-    if all(entry.error for entry in section.entries if entry.who != OURS) and any(
-        entry.error for entry in section.entries
-    ):
+    if any(entry.error for entry in section.entries):
         names.append(f"{name}-errors.svg")
         save_figure(_errors(section, who), folder / names[1])
     return names
@@ -143,7 +142,7 @@ def asked(name: str, quick: bool) -> Section:
         return SECTIONS[name](quick)
     except ImportError as error:
         about = "Not run: it cannot do without a library that is not installed."
-        return Section(name.capitalize(), about, [], missing={str(error.name): str(error)})
+        return Section(name.capitalize(), about, [], missing={error.name or "all of it": str(error)})
 
 
 def write(folder: Path, sections: dict[str, Section], about: Sequence[str]) -> Path:
@@ -177,8 +176,6 @@ def main() -> None:
 
 def _spent() -> tuple[float, float]:
     """CPU seconds of this process, and of those that it started."""
-    import os
-
     used = os.times()
     return time.process_time(), used.children_user + used.children_system
 

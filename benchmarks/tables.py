@@ -117,11 +117,9 @@ def _cell(value: str | float | None) -> str:
         return value
     if not math.isfinite(value):
         raise ValueError(f"expected a finite number in a table, got {value}")
-    if isinstance(value, int) or (value == round(value) and 1e3 <= abs(value) < 1e9):
-        return f"{round(value):,}"
-    if value and not 1e-3 <= abs(value) < 1e5:
-        return f"{value:.1e}"
-    return f"{value:.3g}" if abs(value) < 1e3 else f"{value:,.0f}"
+    if isinstance(value, int) or abs(value) >= 1e3:
+        return f"{value:,.0f}" if abs(value) < 1e9 else f"{value:.1e}"
+    return f"{value:.1e}" if 0.0 < abs(value) < 0.01 else f"{value:.3g}"
 
 
 def machine(libraries: Sequence[str]) -> list[str]:
