@@ -12,8 +12,8 @@ nodes of a grid. The true error is the largest |s - u| at 400,000 random points 
     equal memory   as many bytes of what evaluation reads: coefficients, and the fit's tree
 
 All are asked in one run, by turns, on one core, at the same points in row order and shuffled; a
-figure is the median of the rounds, in seconds of the CPU. What has no gradient is asked for the value only. Last, one
-spline of 1024² cells, which no cache holds: shuffled points beside ordered ones.
+figure is the median of the rounds, of CPU time. What has no gradient is asked for the value only.
+Last, one spline of 1024² cells, which no cache holds: shuffled points beside ordered ones.
 """
 
 from __future__ import annotations

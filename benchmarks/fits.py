@@ -19,92 +19,29 @@ from __future__ import annotations
 import argparse
 import math
 import os
-import statistics
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from importlib import resources
-from typing import Any
 
 import numpy as np
 
 import splinesdf as ss
-from benchmarks.tables import OURS, Entry, clock
+from benchmarks.fit_cases import Case, curve, drawn, glyph, icon, part, seconds
+from benchmarks.fit_methods import METHODS, MOST
+from benchmarks.tables import clock
 from splinesdf.errors import ToleranceNotReached
-from splinesdf.fits.fit import FitResult, fit_steps
-from splinesdf.meshes import Box
+from splinesdf.fits.fit import FitResult
 from splinesdf.paper import tables as paper
 from tests.glyphs import glyphs
 from tests.real_shapes import SMOOTH, formula_shape, icons, outlines
 
-ROUNDS = 5
-SLOW = 2.0  # seconds; what takes longer is timed once
-MOST = 300_000  # cells beyond which the paper's method gives up
 BLOCK = 1_000_000  # random points at a time
 OPERATORS = "SWPV"
 
 
-@dataclass(frozen=True)
-class Case:
-    """A shape, where it is fitted, and the length that tolerances are shares of."""
-
-    name: str
-    shape: ss.Shape
-    domain: Box | None
-    unit: float
-
-    def fit(self, share: float, *, level: float | None = None, **options: Any) -> FitResult:
-        """A fit, over the whole domain or of one level, both given as shares; errors too."""
-        band = None if level is None else (level * self.unit, level * self.unit)
-        return ss.fit(
-            self.shape, tolerance=share * self.unit, domain=self.domain, band=band, **options
-        )
-
-    def start(self, cells: int, level: float | None = None) -> tuple[int, int]:
-        """So many cells along the longer side of the domain."""
-        box = self.domain or self.shape.default_domain(max(0.0, (level or 0.0) * self.unit))
-        width, height = box[2] - box[0], box[3] - box[1]
-        side = max(width, height) / cells
-        return max(1, round(width / side)), max(1, round(height / side))
-
-
-def curve(name: str) -> Case:
-    return Case(name, paper.shape(name), paper.DOMAIN, 1.0)
-
-
-def drawn(shape: ss.Shape, name: str | None = None) -> Case:
-    return Case(name or shape.name, shape, None, shape.size)
-
-
-def glyph(character: str) -> Case:
-    return drawn(glyphs()[f"DejaVuSans:{character}"], f"glyph {character}")
-
-
-def icon(name: str) -> Case:
-    return drawn(icons()[name], name)
-
-
-def part() -> Case:
-    with resources.as_file(resources.files("splinesdf") / "data" / "part.svg") as path:
-        return drawn(ss.read(path), "part.svg")
-
-
 def head(title: str, columns: str) -> None:
     print(f"\n{title}\n{columns}", flush=True)
-
-
-def seconds(runs: Sequence[Callable[[], object]]) -> tuple[list[float], int]:
-    """Medians of the times of runs that take turns, and how many there were."""
-    times: list[list[float]] = [[] for _ in runs]
-    count = 0
-    while count == 0 or (count < ROUNDS and max(map(max, times)) < SLOW):
-        for run, mine in zip(runs, times, strict=True):
-            began = clock()
-            run()
-            mine.append(clock() - began)
-        count += 1
-    return [statistics.median(mine) for mine in times], count
 
 
 @dataclass(frozen=True)
@@ -159,84 +96,6 @@ def table_a() -> None:
                 f"{row.proved / row.believed:6.2f} {row.runs:5} {row.unproved:8}",
                 flush=True,
             )
-
-
-def given_up(case: Case, share: float, **options: Any) -> FitResult:
-    """A fit, or the last round that had no more than `MOST` cells."""
-    try:
-        return case.fit(share, max_cells=MOST, **options)
-    except ToleranceNotReached as stopped:
-        best: FitResult = stopped.result
-        return best
-
-
-def uniform(case: Case, share: float) -> FitResult:
-    """The coarsest uniform grid of n x n cells that keeps the tolerance, or the last.
-
-    By bisection, of odd n and of even ones: where a ridge lies on the square's axis, as gamma1's
-    does, it runs through centers or along edges, and one is far better than the other.
-    """
-    return min((bisected(case, share, odd) for odd in (1, 0)), key=by_cells)
-
-
-def by_cells(result: FitResult) -> tuple[bool, int]:
-    return result.stopped != "reached", result.cells
-
-
-def on_grid(case: Case, share: float, n: int) -> FitResult:
-    """The uniform grid of n x n cells."""
-    options: dict[str, Any] = {"space": "uniform", "operator": "W", "domain": case.domain}
-    return next(fit_steps(case.shape, tolerance=share, start=(n, n), **options))
-
-
-def bisected(case: Case, share: float, odd: int) -> FitResult:
-    """The coarsest of the grids whose n is odd, or even, or the last."""
-
-    def at(half: int) -> FitResult:
-        return on_grid(case, share, 2 * half - odd)
-
-    half = 1
-    while (found := at(half)).stopped != "reached":
-        if 16 * half * half > MOST:
-            return found
-        half *= 2
-    low, high = half // 2, half
-    while high - low > 1:
-        middle = (low + high) // 2
-        tried = at(middle)
-        if tried.stopped == "reached":
-            high, found = middle, tried
-        else:
-            low = middle
-    return found
-
-
-METHODS: dict[str, Callable[[Case, float], FitResult]] = {
-    "hierarchical S": lambda case, share: case.fit(share),
-    "hierarchical W": lambda case, share: case.fit(share, operator="W"),
-    "tensor W": partial(given_up, space="tensor", operator="W"),
-    "uniform W": uniform,
-}
-
-
-def entries(case: Case, share: float) -> list[Entry]:
-    """The paper's grids beside our default, for the report; each method is run once."""
-    result = []
-    for method, run in METHODS.items():
-        began = clock()
-        found = run(case, share)
-        spent = [clock() - began]
-        names = [OURS if method == "hierarchical S" else method]
-        if run is uniform:  # most of it went into looking for the grid
-            began = clock()
-            on_grid(case, share, round(math.sqrt(found.cells)))
-            spent.append(clock() - began)
-            names.append("uniform W, the grid known")
-        missed = "" if found.stopped == "reached" else f"gave up beyond {MOST:,} cells"
-        title, cells = f"{case.name}, {share:.0e}", f"{found.cells:,} cells"
-        for name, took in zip(names, spent, strict=True):
-            result.append(Entry(title, name, took, found.error, cells, missed))
-    return result
 
 
 def table_b() -> None:

@@ -13,8 +13,8 @@ Hausdorff distance to the exact trimmed offset, is within the tolerance and not 
 no setting gets there, the cheapest one whose error is near its best is shown, and marked. Making
 the input is timed apart ("prepare"); for us that is the boundary of a fresh shape, and an offset
 is one of a shape that was never offset before. Rounds go from library to library, and medians
-are shown: what else the machine does hits all alike. With ``--cores 1`` seconds are those of the CPU.
-Where our own time goes is printed last, see `offset_profile`.
+are shown: what else the machine does hits all alike. With ``--cores 1`` seconds are those of the
+CPU. Where our own time goes is printed last, see `offset_profile`.
 """
 
 from __future__ import annotations
@@ -98,18 +98,13 @@ def _paper(name: str) -> ss.Shape:
         return replace(ss.read(file), name=name)
 
 
-def _part() -> ss.Shape:
-    with resources.as_file(resources.files("splinesdf") / "data" / "part.svg") as file:
-        return ss.read(file)
-
-
 # A shape and two distances, one a side. The ellipse's two and the inner ones of limaçon and keyhole
 # are whole, the others trimmed; no two loops of the part or the glyph meet.
 SHAPES: dict[str, tuple[Callable[[], ss.Shape | None], tuple[float, float]]] = {
     "gamma1": (lambda: _paper("gamma1"), (-0.1, 0.1)),
     "gamma2": (lambda: _paper("gamma2"), (-0.05, 0.15)),
     "gamma3": (lambda: _paper("gamma3"), (-0.03, 0.03)),
-    "part": (_part, (-2.0, 2.0)),
+    "part": (lambda: ss.example("part"), (-2.0, 2.0)),
     "glyph": (glyph, (-40.0, 40.0)),
     "keyhole": (lambda: ss.Shape.from_svg_path(KEYHOLE, name="keyhole"), (-2.0, 2.0)),
 }

@@ -115,7 +115,9 @@ def stages(shape: ss.Shape, distance: float, tolerance: float, rounds: int) -> l
         spent.append(watch.own)
     names = dict.fromkeys([*STAGES, *KERNELS, REST])
     found = [
-        Stage(name, *(median(one.get((name, kind), 0.0) for one in spent) for kind in (False, True)))
+        Stage(
+            name, *(median(one.get((name, kind), 0.0) for one in spent) for kind in (False, True))
+        )
         for name in names
     ]
     return [*(s for s in found if s.name != REST), *(s for s in found if s.name == REST)]

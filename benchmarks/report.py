@@ -98,11 +98,17 @@ def draw(section: Section, folder: Path, name: str) -> list[str]:
     figure = new_figure(_WIDE, _ROW * len(asked) + _AROUND)
     axes: Any = figure.subplots()
     for peer in who:
-        some = [(share, asked.index(entry.question)) for entry, share in beside if entry.who == peer]
+        some = [
+            (share, asked.index(entry.question)) for entry, share in beside if entry.who == peer
+        ]
         if some:
             axes.plot(*zip(*some, strict=True), **_look(who, peer))
     axes.axvline(1.0, color=INK, linewidth=1.0)
-    axes.set(xscale="log", xlabel=f"{RATIO}: right of the line we are quicker", ylim=(-0.7, len(asked) - 0.3))
+    axes.set(
+        xscale="log",
+        xlabel=f"{RATIO}: right of the line we are quicker",
+        ylim=(-0.7, len(asked) - 0.3),
+    )
     axes.set_yticks(range(len(asked)), asked)
     axes.invert_yaxis()
     axes.grid(color=FAINT, alpha=0.3)
@@ -119,7 +125,11 @@ def _errors(section: Section, who: list[str]) -> Any:
     figure = new_figure(_WIDE, 4.0)
     axes: Any = figure.subplots()
     for one in who:
-        some = [(e.seconds * section.scale, e.error) for e in section.entries if e.who == one and e.error]
+        some = [
+            (e.seconds * section.scale, e.error)
+            for e in section.entries
+            if e.who == one and e.error
+        ]
         if some:
             axes.plot(*zip(*some, strict=True), **_look(who, one))
     axes.set(xscale="log", yscale="log", xlabel=section.unit, ylabel=section.error)
@@ -142,7 +152,9 @@ def asked(name: str, quick: bool) -> Section:
         return SECTIONS[name](quick)
     except ImportError as error:
         about = "Not run: it cannot do without a library that is not installed."
-        return Section(name.capitalize(), about, [], missing={error.name or "all of it": str(error)})
+        return Section(
+            name.capitalize(), about, [], missing={error.name or "all of it": str(error)}
+        )
 
 
 def write(folder: Path, sections: dict[str, Section], about: Sequence[str]) -> Path:
@@ -167,10 +179,9 @@ def main() -> None:
         began = sum(_spent())
         sections[name] = asked(name, options.quick)
         print(f"{name}: {sum(_spent()) - began:.0f} s of CPU", flush=True)
-    about.append(
-        f"{'quick' if options.quick else 'full'} run, {math.ceil(sum(_spent()))} s of CPU, of which "
-        f"{math.ceil(_spent()[1])} s in processes of their own"
-    )
+    whole, apart = math.ceil(sum(_spent())), math.ceil(_spent()[1])
+    kind = "quick" if options.quick else "full"
+    about.append(f"{kind} run, {whole} s of CPU, of which {apart} s in processes of their own")
     print(write(options.output, sections, about))
 
 

@@ -77,9 +77,7 @@ def compared(
         for one, share in zip(entries, ratios(entries), strict=True)
     ]
     kept = [k for k in range(len(head)) if k < 4 or any(row[k] not in (None, "") for row in rows)]
-    return Table(
-        tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows)
-    )
+    return Table(tuple(head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
 
 
 def lost(entries: Sequence[Entry]) -> list[tuple[float, Entry]]:
@@ -119,7 +117,7 @@ def _cell(value: str | float | None) -> str:
         raise ValueError(f"expected a finite number in a table, got {value}")
     if isinstance(value, int) or abs(value) >= 1e3:
         return f"{value:,.0f}" if abs(value) < 1e9 else f"{value:.1e}"
-    return f"{value:.1e}" if 0.0 < abs(value) < 0.01 else f"{value:.3g}"
+    return f"{value:.2e}" if 0.0 < abs(value) < 0.01 else f"{value:.3g}"
 
 
 def machine(libraries: Sequence[str]) -> list[str]:
