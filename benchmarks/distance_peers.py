@@ -196,7 +196,7 @@ PEERS: dict[str, tuple[Callable[[Question], Answer | None], int]] = {
     "FCPW": (fcpw_bvh, 5),
     "shapely ring": (shapely_ring, 331),
     "shapely STRtree": (shapely_tree, 19),
-    "kd-tree of 1e5": (kd_tree, 19),
+    "kd-tree of 1e5": (kd_tree, 97),
     "scikit-fmm": (fast_marching, 1),
     "scipy edt": (distance_transform, 1),
 }
