@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numba
 
 
+@cache
 def from_python(helper: Callable[..., Any]) -> Callable[..., Any]:
-    """The helper, in a kernel of its own that does nothing else."""
+    """The helper, in a kernel of its own that does nothing else; compiled once a process."""
 
     @numba.njit(error_model="numpy")
     def called(*arguments):

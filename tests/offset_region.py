@@ -250,6 +250,7 @@ class Judge:
         return counts
 
 
+@lru_cache(maxsize=16)
 def region(
     shape: ss.Shape, distance: float, deviation: float, segments: int
 ) -> shapely.Geometry | None:

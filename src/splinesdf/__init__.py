@@ -36,8 +36,9 @@ if TYPE_CHECKING:
     from splinesdf.rasters.layout import Atlas
     from splinesdf.rasters.texture import Texture, texture
     from splinesdf.shapes.shape import Shape
+    from splinesdf.splines.loading import load
     from splinesdf.splines.samples import from_level_set
-    from splinesdf.splines.spline import SplineSDF, load
+    from splinesdf.splines.spline import SplineSDF
     from splinesdf.splines.triangles import Triangles
 
 __version__ = "0.1.0"
@@ -120,11 +121,9 @@ _MODULES = {
         "texture",
     ),
     "shapes.shape": ("Shape",),
+    "splines.loading": ("load",),
     "splines.samples": ("from_level_set",),
-    "splines.spline": (
-        "SplineSDF",
-        "load",
-    ),
+    "splines.spline": ("SplineSDF",),
     "splines.triangles": ("Triangles",),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}

@@ -82,3 +82,36 @@ def test_what_cannot_be_is_one_line(
     assert says in line
     assert sorted(path.name for path in tmp_path.iterdir()) == ["cut.json", "fit.json"]
     assert (tmp_path / "fit.json").read_bytes() == whole
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["--stroke", "outline"], "--stroke"),
+        (["--close"], "--close"),
+        (["--fill", "evenodd"], "--fill"),
+        (["--gap", "0"], "--gap"),
+        (["--layer", "a"], "--layer"),
+        (["--stroke-color", "red"], "--stroke-color"),
+        (["--axis", "wght=1"], "--axis"),
+        (["--columns", "0", "1"], "--columns"),
+        (["--text", ""], "--text"),
+    ],
+)
+@pytest.mark.parametrize("command", ["info", "query", "texture", "view"])
+def test_a_saved_fit_is_not_read_with_options(
+    run: Command, tmp_path: Path, command: str, options: list[str], named: str
+) -> None:
+    square = ss.Shape.from_points([(0, 0), (1, 0), (1, 1), (0, 1)])
+    ss.interpolate(square, (2, 2)).spline.save(tmp_path / "fit.npz")
+    (tmp_path / "points.csv").write_text("0.5,0.5\n")
+    rest = {
+        "query": ["points.csv"],
+        "texture": ["-o", "out.png", "--range", "1"],
+        "view": ["--html", "out.html"],
+    }
+    done = run(command, "fit.npz", *rest.get(command, []), *options, "--limit", "crossings=9")
+    assert done.status == 2
+    assert done.err.startswith(f"splinesdf: expected a shape for {named}, got a saved fit")
+    assert len(done.err.splitlines()) == 1
+    assert not list(tmp_path.glob("out*"))

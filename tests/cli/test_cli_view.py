@@ -11,6 +11,7 @@ from urllib.request import urlopen
 
 import pytest
 
+import splinesdf as ss
 from tests.cli.test_cli import Command, run
 
 __all__ = ["run"]
@@ -53,6 +54,15 @@ def test_view_refuses(run: Command, tmp_path: Path, arguments: tuple[str, ...], 
     assert line in done.err
     assert len([one for one in done.err.splitlines() if one.startswith("splinesdf: ")]) == 1
     assert not list(tmp_path.glob("page*"))
+
+
+def test_view_of_a_saved_fit_has_the_limits_that_are_given(run: Command, tmp_path: Path) -> None:
+    star = ss.Shape.from_points([(0, 0), (9, 9), (9, 0), (0, 9), (4, 12), (5, -3)])
+    ss.interpolate(star, (2, 2)).spline.save(tmp_path / "fit.npz")
+    done = run("view", "fit.npz", "--html", "page.html", "-d", "0.5", "--limit", "crossings=1")
+    assert done.status == 2
+    assert "up to 1 crossings" in done.err
+    assert not (tmp_path / "page.html").exists()
 
 
 def test_view_opens_the_page_unless_told_not_to(

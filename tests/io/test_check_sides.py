@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -207,3 +208,30 @@ def test_polylines_stay_within_a_quarter_of_the_tolerance() -> None:
     line = flattened(at, 6, 1e-4)
     middles = 0.5 * (line[:-1] + line[1:])
     assert 1e-6 < np.abs(1.0 - np.hypot(*middles.T)).max() <= 0.25e-4
+
+
+def test_halving_of_a_curve_that_jumps_ends() -> None:
+    def step(t: Any) -> Any:
+        return np.stack([t, np.where(t < 0.3, 0.0, 1.0)], axis=-1)
+
+    points = flattened(step, 1, 1e-6)
+    assert len(points) == 5 + 20
+    assert np.ptp(points[:, 1]) == 1.0
+    assert np.min(np.diff(points[:, 0])) == 0.25 * 2.0**-20
+
+
+def test_a_curve_that_is_a_point_asks_for_nothing_beside_it() -> None:
+    square = ss.Shape.from_points([(0, 0), (9, 0), (9, 9), (0, 9)])
+    (contour,) = ss.offset(square, -1.0, tolerance=1e-3)
+    ring = contour.points(1e-4)
+    point = np.full((3, 2), 4.5)
+    alone, both = (check_sides(square, -1.0, curves, 1e-3) for curves in ([ring], [ring, point]))
+    assert (alone.wrong, both.wrong) == (0, 0)
+    assert both.asked < alone.asked
+
+
+def test_a_file_without_a_curve_cannot_be_checked(tmp_path: Path) -> None:
+    square = ss.Shape.from_points([(0, 0), (9, 0), (9, 9), (0, 9)])
+    (tmp_path / "a.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+    with pytest.raises(ss.InputError, match=r"a\.svg: expected at least one curve, found none"):
+        measure_file(tmp_path / "a.svg", square, [-1.0], tolerance=1e-3)

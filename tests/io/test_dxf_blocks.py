@@ -10,13 +10,14 @@ import ezdxf
 import numpy as np
 import pytest
 import shapely
+from ezdxf.xclip import XClip
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from shapely.affinity import affine_transform
 
 import splinesdf as ss
-from tests.reading import areas
+from tests.reading import areas, assert_one_line
 
 # An F is its own image in no mirror and no turn.
 F = [(1, 1), (6, 1), (6, 2), (2, 2), (2, 4), (4.5, 4), (4.5, 5), (2, 5), (2, 9), (1, 9)]
@@ -112,3 +113,63 @@ def test_a_block_seen_from_below_is_mirrored_and_a_tilted_one_is_named(tmp_path:
     shape = read(document, tmp_path)
     assert shape.box == pytest.approx((-6, 1, -1, 9))
     assert "left out: 1 tilted LWPOLYLINE" in shape.notes
+
+
+def test_blocks_that_are_clipped_are_refused_or_read_whole(tmp_path: Path) -> None:
+    document = ezdxf.new(units=4)
+    document.blocks.new("f").add_lwpolyline(F, close=True)
+    insert = document.modelspace().add_blockref("f", (0, 0))
+    XClip(insert).set_block_clipping_path([(0, 0), (3, 3)])
+    with pytest.raises(ss.InputError, match=r"not clipped, got a part of 'f': ignore='clip-path'"):
+        read(document, tmp_path)
+    whole = read(document, tmp_path, ignore="clip-path")
+    assert_allclose(np.abs(areas(whole)), [shapely.Polygon(F).area], rtol=1e-12)
+
+
+@pytest.mark.parametrize("names", ["a", "abc"])
+def test_blocks_within_themselves_are_refused(tmp_path: Path, names: str) -> None:
+    document = ezdxf.new(units=4)
+    for name, inner in zip(names, names[1:] + names[0], strict=True):
+        block = document.blocks.new(name)
+        block.add_circle((0, 0), 1)
+        block.add_blockref(inner, (1, 1))
+    document.modelspace().add_blockref("a", (0, 0))
+    with pytest.raises(ss.InputError, match="expected blocks that can be resolved") as caught:
+        read(document, tmp_path)
+    assert_one_line(caught.value, "drawing.dxf")
+
+
+def test_blocks_nested_deeper_than_calls_may_be_are_refused(tmp_path: Path) -> None:
+    """Two calls a level, of a thousand."""
+    document = ezdxf.new(units=4)
+    document.blocks.new("0").add_circle((0, 0), 1)
+    for level in range(1, 520):
+        document.blocks.new(str(level)).add_blockref(str(level - 1), (0, 0))
+    document.modelspace().add_blockref("519", (0, 0))
+    with pytest.raises(ss.InputError, match="blocks that are not nested so deep") as caught:
+        read(document, tmp_path)
+    assert_one_line(caught.value, "drawing.dxf")
+
+
+@pytest.mark.parametrize("block", [{}, {"10": "1e999"}])
+@pytest.mark.parametrize("insert", [{"10": "-inf"}, {"41": "1e308"}, {"41": "nan"}, {}])
+def test_blocks_inserted_nowhere_are_named(
+    tmp_path: Path, block: dict[str, str], insert: dict[str, str]
+) -> None:
+    """Once with a warning of NumPy, which is an error for who asks for that."""
+    where = {"10": "9", "20": "9", "30": "0", **insert}
+    base = {"10": "8", "20": "0", "30": "0", **block}
+    parts = (
+        "0 SECTION 2 BLOCKS 0 BLOCK 8 0 2 b",
+        *(f"{code} {value}" for code, value in base.items()),
+        "0 CIRCLE 8 0 10 8 20 0 40 5 0 ENDBLK 0 ENDSEC 0 SECTION 2 ENTITIES",
+        "0 CIRCLE 8 0 10 0 20 0 40 1 0 INSERT 8 0 2 b",
+        *(f"{code} {value}" for code, value in where.items()),
+        "0 ENDSEC 0 EOF",
+    )
+    tags = " ".join(parts).split(" ")
+    (tmp_path / "a.dxf").write_text("\n".join(tags) + "\n")
+    shape = ss.read(tmp_path / "a.dxf")
+    nowhere = bool(block or insert)
+    assert_allclose(np.abs(areas(shape)).max(), (1 if nowhere else 25) * math.pi)
+    assert any("INSERT" in one or "CIRCLE" in one for one in shape.notes) == nowhere

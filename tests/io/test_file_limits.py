@@ -17,6 +17,7 @@ import zlib
 from itertools import combinations, pairwise
 from pathlib import Path
 
+import brotli
 import pytest
 import shapely
 
@@ -92,6 +93,13 @@ def test_a_text_of_many_pieces(tmp_path: Path) -> None:
     _limited(tmp_path / name, content, "pieces", pieces, text="8888")
 
 
+def test_a_path_of_many_commands_is_not_left_out_as_a_broken_one(tmp_path: Path) -> None:
+    path = "<path d='M0 0" + "l1 1" * 30 + "'/><rect width='9' height='9'/>"
+    (tmp_path / "a.svg").write_text(f"<svg xmlns='http://www.w3.org/2000/svg'>{path}</svg>")
+    with pytest.raises(ss.InputError, match=r"Limits\(pieces="):
+        ss.read(tmp_path / "a.svg", limits=ss.Limits(pieces=20))
+
+
 def test_crossings_are_counted_before_there_is_memory_for_them() -> None:
     dice = random.Random(1)
     corners = [(dice.random(), dice.random()) for _ in range(3000)]  # 2,000,000 crossings
@@ -125,6 +133,27 @@ def test_a_shape_keeps_the_limit_of_its_crossings(tmp_path: Path) -> None:
     )
     mended = dataclasses.replace(tight, limits=ss.Limits(crossings=count))
     assert len(mended.boundary.start) == len(roomy.boundary.start)
+
+
+def test_a_saved_fit_has_the_limits_of_who_reads_it(tmp_path: Path) -> None:
+    """Not those of who wrote it: a file would raise them by itself."""
+    file, count = tmp_path / "a.npz", _crossings(STAR)
+    shape = ss.Shape.from_points(STAR)
+    made = dataclasses.replace(shape, limits=ss.Limits(crossings=10**9, pieces=10**9))
+    dataclasses.replace(ss.interpolate(shape, (2, 2)).spline, shape=made).save(file)
+    usual, tight, roomy = (
+        ss.load(file, limits=limits).shape
+        for limits in (None, ss.Limits(crossings=count - 1), ss.Limits(crossings=count))
+    )
+    assert usual is not None
+    assert tight is not None
+    assert roomy is not None
+    assert usual.limits == ss.Limits()
+    with pytest.raises(ss.InputError, match=f"up to {count - 1:,} crossings"):
+        ss.signed_distance(tight, [0.0, 0.0])
+    assert ss.signed_distance(roomy, [0.0, 0.0]) == ss.signed_distance(shape, [0.0, 0.0])
+    with pytest.raises(ss.InputError, match="expected limits such as"):
+        ss.load(file, limits=9)  # type: ignore[arg-type]
 
 
 def test_pairs_side_by_side_are_counted() -> None:
@@ -266,6 +295,19 @@ def test_a_packed_font_that_is_too_large(tmp_path: Path, name: str) -> None:
     _refused(tmp_path / name, content, "up to 10,000 bytes of a font", text="A", limits=tight)
 
 
+def test_a_packed_font_is_unpacked_in_parts_up_to_the_limit(tmp_path: Path) -> None:
+    """Three million zeros in a few bytes; and bytes that are not packed."""
+    file = tmp_path / "a.woff2"
+    for packed, expected in (
+        (brotli.compress(bytes(3_000_000)), r"up to 2,000,000 bytes of a font"),
+        (b"not packed by brotli", "expected a font, got one that cannot be read"),
+    ):
+        header = b"wOF2" + bytes(16) + len(packed).to_bytes(4, "big") + bytes(24)
+        file.write_bytes(header + packed)
+        with pytest.raises(ss.InputError, match=expected):
+            ss.read(file, text="A", limits=ss.Limits(expanded=2_000_000))
+
+
 def test_glyphs_within_glyphs_are_counted(tmp_path: Path) -> None:
     from fontTools.fontBuilder import FontBuilder
     from fontTools.pens.ttGlyphPen import TTGlyphPen
@@ -323,3 +365,21 @@ def test_a_damaged_drawing_is_refused_in_words_that_can_be_printed(tmp_path: Pat
     with pytest.raises(ss.InputError) as caught:
         ss.read(tmp_path / "a.dxf")
     assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize("limit", [f.name for f in dataclasses.fields(ss.Limits)])
+def test_a_limit_beyond_all_files_costs_nothing(tmp_path: Path, limit: str) -> None:
+    file = tmp_path / "a.svgz"
+    file.write_bytes(gzip.compress(b"<svg><path d='M0 0H1V1Z'/></svg>", mtime=0))
+    most = 300 if limit == "nesting" else 2**53
+    shape = ss.read(file, limits=ss.Limits(**{limit: most}))
+    assert ss.signed_distance(shape, (1.0, 0.5)) == 0.0
+    with pytest.raises(ss.InputError, match=f"the limit '{limit}' from 1 to {most:,}, got"):
+        ss.Limits(**{limit: 1e30})
+
+
+def test_a_file_that_is_too_long_is_told_nothing_else(tmp_path: Path) -> None:
+    _refused(tmp_path / "a.wkt", "POLYGON((0 0,1 0,0 1))", r"^a.wkt: expected a file of up to 9 b",
+             limits=ss.Limits(bytes=9))  # fmt: skip
+    _refused(tmp_path / "a.json", '{"x": "cos(t)", "y": "sin(t)"}', "up to 9 pieces of all form",
+             limits=ss.Limits(formulas=9))  # fmt: skip

@@ -16,7 +16,7 @@ import splinesdf as ss
 from splinesdf.contours.contour import Contour, mirrored
 from tests.chains import circle, circular, ellipse, mixed_chain, open_chain, slot, turned
 from tests.examples import examples
-from tests.nearness import apart, apart_from_line, dense
+from tests.nearness import apart, apart_from_conics, apart_from_line, dense
 
 NUMBER = re.compile(r"[A-Z]-?\d+(\.\d+)?")
 
@@ -262,7 +262,7 @@ def test_a_contour_is_entered_at_its_nearest_point(x: float, y: float, which: st
     with tempfile.TemporaryDirectory() as folder:
         milling = ss.Milling(start=(x, y))
         (cut,) = program(Path(folder), [chain], tolerance=1e-3, milling=milling).cuts
-    nearest = apart(np.array([[x, y]]), chain, 1e-9)[0]
+    nearest = apart_from_conics(np.array([[x, y]]), chain.arcs, chain.weights)[0]
     assert abs(cut.points[0] - complex(x, y)) <= nearest + 3e-3
     assert cut.points[0] == cut.points[-1]
     compare(cut, chain, 1e-3)

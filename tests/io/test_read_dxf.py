@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import ezdxf
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.interpolate import CubicSpline
 
 import splinesdf as ss
 from tests.reading import areas, assert_one_line
@@ -126,6 +128,92 @@ def test_a_spline_through_fit_points_is_closed(dxf) -> None:
     assert_allclose(total(shape), math.pi, rtol=1e-2)
 
 
+@pytest.mark.parametrize("count", [3, 4, 7, 150])
+@pytest.mark.parametrize("repeated", [False, True])
+def test_a_closed_spline_of_fit_points_is_the_periodic_one(dxf, count: int, repeated: bool) -> None:
+    """By chord lengths, as CAD programs take them."""
+    angles = np.arange(count) * (2.0 * math.pi / count)
+    away = 1.0 + 0.05 * np.random.default_rng(count).random(count)
+    points = np.stack([3.0 * away * np.cos(angles), 2.0 * away * np.sin(angles)], axis=1)
+    around = np.vstack([points, points[:1]])
+
+    def draw(document: Any) -> None:
+        document.modelspace().add_spline(around if repeated else points).closed = True
+
+    shape = dxf(draw)
+    assert shape.notes == ()
+    assert (shape.loop_count, shape.piece_count) == (1, count)
+    lengths = np.append(0.0, np.cumsum(np.hypot(*np.diff(around, axis=0).T)))
+    curve = CubicSpline(lengths, around, bc_type="periodic")(np.linspace(0.0, lengths[-1], 999))
+    assert np.abs(ss.signed_distance(shape, curve)).max() <= 1e-13
+
+
+def test_a_closed_spline_begins_and_ends_as_it_says(dxf) -> None:
+    def draw(document: Any) -> None:
+        spline = document.modelspace().add_spline([(0, 0), (4, 0), (4, 3)])
+        spline.closed = True
+        spline.dxf.start_tangent, spline.dxf.end_tangent = (0, -1, 0), (1, 0, 0)
+
+    shape = dxf(draw)
+    assert (shape.loop_count, shape.piece_count) == (1, 3)
+    first, last = np.diff(shape.piece(0), axis=0)[0], np.diff(shape.piece(2), axis=0)[-1]
+    assert_allclose(first / np.hypot(*first), [0.0, -1.0], atol=1e-12)
+    assert_allclose(last / np.hypot(*last), [1.0, 0.0], atol=1e-12)
+    assert np.array_equal(shape.piece(2)[-1], [0.0, 0.0])
+
+
+NOWHERE, BEYOND = float("nan"), 1e101
+# What bounds nothing, and in which words it is left out.
+FLAT: list[tuple[Draw, str]] = [
+    (lambda m: m.add_line((5, 5), (5, 5)), "1 LINE (of no length)"),
+    (lambda m: m.add_line((5, 5), (BEYOND, 5)), "1 LINE (with numbers beyond use)"),
+    (lambda m: m.add_arc((5, BEYOND), 1, 0, 90), "1 ARC (with numbers beyond use)"),
+    (lambda m: m.add_circle((5, 5), 0), "1 CIRCLE (of no radius)"),
+    (lambda m: m.add_ellipse((5, 5), (1, 0, 0.5), 0.5), "1 ELLIPSE (tilted)"),
+    (lambda m: m.add_polymesh((3, 3)), "1 POLYLINE (a mesh)"),
+    (lambda m: m.add_polyline2d([]), "1 POLYLINE (without points)"),
+    (
+        lambda m: m.add_polyline3d([(0, 0, 0), (NOWHERE, 1, 1), (3, 4, 0)]),
+        "1 POLYLINE (without finite points)",
+    ),
+    (lambda m: m.add_lwpolyline([(3, 3), (3, 3)], close=True), "1 LWPOLYLINE (of no length)"),
+    (lambda m: m.add_spline([(3, 3), (NOWHERE, 3), (3, 4)]), "1 SPLINE (without a curve)"),
+    (lambda m: m.add_spline([(3, 3), (3, 3), (3, 3)]), "1 SPLINE (without a curve)"),
+    (
+        lambda m: m.add_rational_spline([(3, 3), (4, 3), (3, 4), (4, 4)], [1, -1, 1, 1]),
+        "1 SPLINE (expected positive finite weights, got -1 for control point 2)",
+    ),
+    (
+        lambda m: setattr(m.add_spline([(3, 3), (4, 4), (3, 3)]), "closed", True),
+        "1 SPLINE (through fewer than three places)",
+    ),
+    (
+        lambda m: setattr(m.add_spline([(3, 3), (4, 4), (NOWHERE, 3)]), "closed", True),
+        "1 SPLINE (with numbers beyond use)",
+    ),
+]
+
+
+@pytest.mark.parametrize(("draw", "note"), FLAT, ids=[note for _, note in FLAT])
+def test_what_bounds_nothing_is_left_out_and_named(dxf, draw: Draw, note: str) -> None:
+    def beside(document: Any) -> None:
+        document.modelspace().add_circle((0, 0), 1)
+        draw(document.modelspace())
+
+    shape = dxf(beside)
+    assert shape.notes == (f"left out: {note}",)
+    assert_allclose(total(shape), math.pi, rtol=1e-11)
+
+
+def test_corners_that_are_drawn_twice_are_one_and_open_polylines_are_joined(dxf) -> None:
+    def draw(document: Any) -> None:
+        space = document.modelspace()
+        space.add_lwpolyline([(0, 0), (0, 0), (4, 0), (4, 3), (4, 3)])
+        space.add_line((4, 3), (0, 0))
+
+    assert_allclose(total(dxf(draw)), 6.0, rtol=1e-12)
+
+
 def test_inserts_are_turned_mirrored_stretched_and_nested(dxf) -> None:
     def draw(document: Any) -> None:
         inner = document.blocks.new("inner")
@@ -236,7 +324,8 @@ def test_what_is_no_drawing_is_refused_in_one_line(dxf, tmp_path: Path) -> None:
     with pytest.raises(ss.InputError, match="got left out: 1 TEXT") as caught:
         dxf(lambda d: d.modelspace().add_text("nothing"))
     assert_one_line(caught.value, "drawing.dxf")
-    for content in (b"", b"0\nSECTION\n2\nENTITIES\n0\nLINE\n10", b"\x00\xff" * 50, b"AutoCAD" * 9):
+    damaged = [b"", b"0\nSECTION\n2\nENTITIES\n0\nLINE\n10", b"\x00\xff" * 50, b"AutoCAD" * 9]
+    for content in (*damaged, b"0\nSECTION\n0\nENDSEC\n0\nEOF\n"):
         (tmp_path / "bad.dxf").write_bytes(content)
         with pytest.raises(ss.InputError) as caught:
             ss.read(tmp_path / "bad.dxf")
@@ -252,3 +341,12 @@ def test_what_write_writes_can_be_read(tmp_path: Path) -> None:
         assert shape.loop_count == len(contours)
         written = sorted(abs(c.area) for c in contours)
         assert_allclose(sorted(np.abs(areas(shape))), written, rtol=1e-4)
+
+
+def test_without_ezdxf_it_is_said_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.dxf").write_text("0\nEOF\n")
+    monkeypatch.setitem(sys.modules, "ezdxf.filemanagement", None)
+    with pytest.raises(ss.MissingExtraError, match=r"pip install 'splinesdf\[dxf\]'"):
+        ss.read(tmp_path / "a.dxf")

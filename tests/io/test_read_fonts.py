@@ -10,9 +10,12 @@ from typing import Any
 import matplotlib
 import numpy as np
 import pytest
+from fontTools.colorLib.builder import buildCOLR
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.ttLib import TTFont
+from fontTools.ttLib.tables.otTables import PaintFormat
 from matplotlib.font_manager import FontProperties
 from matplotlib.path import Path as MplPath
 from matplotlib.textpath import TextPath
@@ -149,6 +152,73 @@ def test_damaged_fonts_are_refused_in_one_line(tmp_path: Path, built: Callable[[
             ss.read(file, text="A")
         except ss.InputError as error:
             assert_one_line(error, "bad.ttf")
+
+
+@pytest.mark.parametrize(
+    ("module", "words"), [("fontTools.ttLib", "reading fonts needs"), ("brotli", "needs brotli")]
+)
+def test_what_is_missing_is_said_with_the_command_that_installs_it(
+    monkeypatch: pytest.MonkeyPatch, module: str, words: str
+) -> None:
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ss.MissingExtraError, match=rf"{words}.*pip install 'splinesdf\[fonts\]'"):
+        ss.read(FONTS / "inter-latin-wght-normal.woff2", text="A")
+
+
+SOLID = {"Format": PaintFormat.PaintSolid, "PaletteIndex": 0, "Alpha": 1.0}
+LAYERS = {"Format": PaintFormat.PaintGlyph, "Paint": SOLID, "Glyph": "space"}
+
+
+@pytest.mark.parametrize("layers", [[("space", 0)], LAYERS], ids=["version 0", "version 1"])
+def test_glyphs_in_layers_of_colors_are_refused(built: Callable[[], Path], layers: Any) -> None:
+    path = built()
+    font = TTFont(path)
+    font["COLR"] = buildCOLR({"A": layers})
+    font.save(path)
+    with pytest.raises(ss.InputError, match="got 'A' in layers of colors"):
+        ss.read(path, text="A")
+    font["COLR"] = buildCOLR({".notdef": layers})
+    font.save(path)
+    assert ss.read(path, text="A").box == pytest.approx((0, 0, 900, 900))
+
+
+def test_without_a_space_and_harfbuzz_letters_follow_at_once(
+    monkeypatch: pytest.MonkeyPatch, built: Callable[[], Path]
+) -> None:
+    path = built()
+    font = TTFont(path)
+    for table in font["cmap"].tables:
+        table.cmap.pop(32, None)  # two tables may be one
+    font.save(path)
+    monkeypatch.setitem(sys.modules, "uharfbuzz", None)
+    assert ss.read(path, text="A\tA").box == pytest.approx((0, 0, 1900, 900))
+
+
+def test_cubics_and_points_that_are_there_twice(tmp_path: Path) -> None:
+    """Four cubics around a disk, to 3e-4 of its radius, and a line of no length."""
+    pen, k = T2CharStringPen(1000, None), 552
+    pen.moveTo((1000, 0))
+    pen.lineTo((1000, 0))
+    pen.curveTo((1000, k), (k, 1000), (0, 1000))
+    pen.curveTo((-k, 1000), (-1000, k), (-1000, 0))
+    pen.curveTo((-1000, -k), (-k, -1000), (0, -1000))
+    pen.curveTo((k, -1000), (1000, -k), (1000, 0))
+    pen.closePath()
+    nothing = T2CharStringPen(1000, None)
+    builder = FontBuilder(1000, isTTF=False)
+    builder.setupGlyphOrder([".notdef", "A"])
+    builder.setupCharacterMap({65: "A"})
+    strings = {".notdef": nothing.getCharString(), "A": pen.getCharString()}
+    builder.setupCFF("Test", {}, strings, {})
+    builder.setupHorizontalMetrics(dict.fromkeys((".notdef", "A"), (1000, 0)))
+    builder.setupHorizontalHeader(ascent=900, descent=-100)
+    builder.setupPost()
+    builder.save(tmp_path / "a.otf")
+    shape = ss.read(tmp_path / "a.otf", text="A")
+    assert shape.piece_count == 4
+    around = np.linspace(0.0, 2.0 * np.pi, 99)
+    points = 1000.0 * np.stack([np.cos(around), np.sin(around)], axis=1)
+    assert np.abs(ss.signed_distance(shape, points)).max() <= 0.3
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from shapely import contains_xy, from_wkt
 
 import splinesdf as ss
 from tests.reading import areas, assert_one_line, corners
@@ -181,6 +182,9 @@ def test_degrees_and_heights_are_noted(read: Read) -> None:
         ("a.wkt", "POLYGON " + "(" * 200, "up to 100 brackets"),
         ("a.wkt", "POLYGON ((0 0, 1 0, 1 1)) ?", "character 26"),
         ("a.wkt", "POINT (1 2)", "expected polygons, got 1 POINT"),
+        ("a.wkt", "POLYGON((0 0,4 0,4 3 0 3,0 0))", "got 2 and 4: is a comma missing"),
+        ("a.wkt", "MULTIPOLYGON(EMPTY,EMPTY)", "expected polygons, got none"),
+        ("a.geojson", '{"type": "Polygon", "coordinates": [[[1, true]]]}', "two numbers"),
     ],
 )
 def test_what_is_no_map_is_refused_in_one_line(
@@ -189,6 +193,26 @@ def test_what_is_no_map_is_refused_in_one_line(
     with pytest.raises(ss.InputError, match=expected) as caught:
         read(name, text)
     assert_one_line(caught.value, name)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "MULTIPOLYGON(EMPTY, ((0 0,4 0,4 3,0 3,0 0)), EMPTY)",
+        "POLYGON((0 0,4 0,4 3,0 3,0 0), EMPTY)",
+        "MULTIPOLYGON(((0 0,4 0,4 3,0 3,0 0), EMPTY, (1 1,2 1,2 2,1 1)))",
+        "POLYGONZ((0 0 1,4 0 1,4 3 1,0 3 1,0 0 1))",
+        "GEOMETRYCOLLECTIONZ(POINTZ(1 1 1),POLYGONZ((0 0 1,4 0 1,4 3 1,0 3 1,0 0 1)))",
+    ],
+)
+def test_empty_parts_and_joined_words_of_wkt_are_read_as_geos_reads_them(
+    read: Read, text: str
+) -> None:
+    found = from_wkt(text)
+    points = np.random.default_rng(4).uniform((-1, -1), (5, 4), (500, 2))
+    inside = contains_xy(found, *points.T)
+    assert inside.any()
+    assert ((ss.signed_distance(read("a.wkt", text), points) < 0.0) == inside).all()
 
 
 @pytest.mark.parametrize("ending", ["geojson", "wkt", "csv"])
@@ -202,3 +226,36 @@ def test_what_write_writes_can_be_read(tmp_path: Path, ending: str) -> None:
     inside = ss.signed_distance(part, points) < -1.01
     clear = np.abs(ss.signed_distance(part, points) + 1.0) > 0.01
     assert np.array_equal((ss.signed_distance(shape, points) < 0)[clear], inside[clear])
+
+
+def test_contours_at_several_distances_are_no_one_region(tmp_path: Path) -> None:
+    square = ss.Shape.from_points([(0, 0), (9, 0), (9, 9), (0, 9)])
+    contours = ss.offset(square, [-1.0, -3.0], tolerance=1e-3)
+    path = tmp_path / "levels.csv"
+    ss.write(path, contours, tolerance=1e-3)
+    with pytest.raises(
+        ss.InputError, match=r"one distance, got 2 distances \(-1.0, -3.0\)"
+    ) as caught:
+        ss.read(path)
+    assert_one_line(caught.value, "levels.csv")
+    assert "fill='evenodd'" in str(caught.value)
+    with pytest.raises(ss.InputError, match="of one distance"):
+        ss.read_all(path)
+    # Outside, between both, in the middle.
+    probes = [(0.5, 4.5), (2.0, 4.5), (4.5, 4.5)]
+    for fill, inside in (("evenodd", [False, True, False]), ("nonzero", [False, True, True])):
+        assert (ss.signed_distance(ss.read(path, fill=fill), probes) < 0.0).tolist() == inside
+    text = path.read_text().splitlines()
+    path.write_text("\n".join(line for line in text if ",-1.0," not in line))
+    assert areas(ss.read(path)) == pytest.approx([9.0])
+
+
+def test_a_distance_of_each_point_is_another_column(read: Read) -> None:
+    text = "contour,distance,x,y\n0,1,0,0\n0,2,4,0\n0,3,4,3\n1,1,9,9\n1,1,8,9\n1,2,8,8"
+    assert areas(read("a.csv", text)) == pytest.approx([6.0, 0.5])
+
+
+def test_an_airfoil_of_two_points_is_refused_by_its_line(read: Read) -> None:
+    with pytest.raises(ss.InputError, match="points from line 2 on: expected at least") as caught:
+        read("a.dat", "a line\n0 0\n1 0\n")
+    assert_one_line(caught.value, "a.dat")

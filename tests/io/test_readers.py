@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -153,6 +154,7 @@ def test_blank_lines_separate_loops(table) -> None:
         ("1,x\n2,3\n", "line 1: expected a number, got 'x'"),
         ("x,y\nz,w\n", "line 2: expected a number, got 'z'"),
         ("0,0\n1,\n", "line 2: expected a number, got ''"),
+        ("0,0\n4_0,1\n1,1\n", "line 2: expected a number, got '4_0'"),
         ("1,5;2.5\n1;2,5,3\n", "line 2: expected a number, got '2,5,3'"),
         ("0,0\n1,1\n0,1e999", "line 3: expected finite numbers"),
         ("0,0\nnan,1\n0,1", "line 2: expected finite numbers"),
@@ -233,6 +235,8 @@ def test_wrong_paths_are_refused(tmp_path: Path) -> None:
         with pytest.raises(ss.InputError, match=expected) as caught:
             ss.read(tmp_path / name)
         assert_one_line(caught.value, Path(name).name)
+    with pytest.raises(ss.InputError, match="cannot be read: File name too long"):
+        ss.read("a" * 300 + ".svg")
     for bad in (5, None, b"a.svg"):
         with pytest.raises(ss.InputError, match="expected a file's path, got"):
             ss.read(bad)  # type: ignore[arg-type]
@@ -291,3 +295,20 @@ def test_any_text_is_read_or_refused(tmp_path: Path, text: str) -> None:
             except ss.InputError:
                 continue
             assert shape.piece_count > 0
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ({"stroke": "thick"}, "expected stroke of none, outline, centre, got 'thick'"),
+        ({"ignore": "strokes"}, "expected to ignore clip-path or mask or dashes, got 'strokes'"),
+        ({"location": 5}, "expected a location such as {'wght': 650}, got 5"),
+        ({"layers": [1, "a"]}, "expected layers as texts, got"),
+    ],
+)
+def test_options_of_another_kind_are_refused(
+    tmp_path: Path, options: dict[str, object], expected: str
+) -> None:
+    (tmp_path / "a.svg").write_text("<svg><circle r='1'/></svg>")
+    with pytest.raises(ss.InputError, match=re.escape(expected)):
+        ss.read(tmp_path / "a.svg", **options)  # type: ignore[arg-type]

@@ -98,6 +98,15 @@ CASES = {
         "<svg x='10' y='10' width='30' height='30' style='overflow:visible'><rect width='60' "
         "height='60'/></svg>"
     ),
+    "an element of another program in a switch": (
+        f"<switch><a xmlns='urn:x'/><!-- b -->{SMALL}{DISC}</switch>"
+    ),
+    "an origin in two words": (
+        "<rect width='40' height='20' transform='rotate(30)' transform-origin='50 40'/>"
+    ),
+    "an origin in two words, y first": (
+        "<rect width='40' height='20' transform='rotate(30)' transform-origin='bottom left'/>"
+    ),
     "a larger font": "<g font-size='larger'><rect width='2em' height='1em'/></g>",
     **{
         f"aspect {how}": VIEW.format(how, FITTED)
@@ -144,6 +153,8 @@ def test_boxes_are_as_the_specification_says(
         ("<path d='M10 10H60V50' marker-start='url(#m)'/>", "1 markers of path"),
         (f"<clipPath id='c'><g>{SMALL}</g>{DISC}</clipPath>{CLIPPED}", "1 g in a clip-path"),
         (f"<rect systemLanguage='de' width='5' height='5'/>{DISC}", "1 rect for other languages"),
+        (f"<style type='text/less'>@a:1</style>{DISC}", "1 style that is no CSS"),
+        ("<path d='M0 0L'/>" * 5 + DISC, "and 2 more elements with errors"),
     ],
 )  # fmt: skip
 def test_what_is_passed_over_is_named(tmp_path: Path, inner: str, expected: str) -> None:

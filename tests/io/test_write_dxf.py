@@ -77,6 +77,19 @@ def test_dxf_of_lines_and_arcs_is_a_polyline(tmp_path: Path, first: int, flip: b
             assert part.dxf.center.y == pytest.approx(0.0, abs=1e-12)
 
 
+def test_dxf_of_what_has_no_center_nearby_is_a_spline(tmp_path: Path) -> None:
+    """Of a far center, or a bulge, a reader would know too few digits; a point has none."""
+    radius = 1e8
+    far = circular(radius, complex(-radius, 0.0), sweep=10.0 / radius, count=2)
+    write(tmp_path / "a.dxf", [far, Contour(np.full((2, 3, 2), 5.0), np.ones(2))])
+    arc, point = ezdxf.readfile(tmp_path / "a.dxf").modelspace()
+    assert (arc.dxftype(), point.dxftype()) == ("SPLINE", "SPLINE")
+    x, y, _ = np.array([tuple(p) for p in arc.construction_tool().approximate(50)]).T
+    assert np.abs(x + y * y / (radius + np.hypot(radius + x, y))).max() <= 4e-16 * radius
+    assert y.max() == pytest.approx(10.0)
+    assert np.ptp(np.array(point.control_points), axis=0).max() == 0.0
+
+
 @pytest.mark.parametrize("way", [-1.0, 1.0])
 def test_dxf_of_a_single_open_arc_or_line(tmp_path: Path, way: float) -> None:
     chains = [circular(2.0, 1 + 1j, 0.3, way * 4.0, 3), line(0j, 1 + 1j, 3 + 3j)]

@@ -13,11 +13,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+import splinesdf as ss
 from splinesdf.contours.contour import Contour, mirrored
 from splinesdf.io.output import write
 from splinesdf.io.writers.svg import path_data
 from tests.chains import (
     circle,
+    circular,
     ellipse,
     from_arc,
     mixed_chain,
@@ -85,6 +87,10 @@ def test_svg_cubics_use_the_tolerance() -> None:
 @example(weight=0.01, x=1.15625, y=0.0, turn=0.0, far=0.0)
 @example(weight=0.5, x=2.0, y=0.0, turn=1.4e-161, far=0.0)
 @example(weight=0.5, x=2.0, y=3.9262492068128747e-227, turn=0.0, far=0.0)
+# An axis far beyond the chord; an axis, and a half turn, that a reader would not find again.
+@example(weight=0.9999999707251256, x=0.5, y=2.1114287798974987, turn=0.0, far=0.0)
+@example(weight=0.9924161509570961, x=-0.9425302081780966, y=9.763e-05, turn=0.0, far=0.0)
+@example(weight=1.2095952786750406e-09, x=0.5, y=2369422241.4021516, turn=0.0, far=0.0)
 def test_any_arc_comes_back(weight: float, x: float, y: float, turn: float, far: float) -> None:
     rotation = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
     arc = np.array([[[0.0, 0.0], [x, y], [1.0, 0.0]]]) @ rotation + far
@@ -140,6 +146,26 @@ def test_svg_view_holds_everything_with_a_margin(tmp_path: Path) -> None:
     x, y, width, height = map(float, root.attrib["viewBox"].split())
     assert 19.0 <= x - -0.5 <= 20.0 <= 40.0 <= x + width <= 42.0
     assert -112.0 <= y <= -110.0 < -90.0 <= y + height <= -88.0
+
+
+@pytest.mark.parametrize("radius", [1e6, 1e8])
+def test_an_arc_whose_center_is_far_away_is_a_cubic(radius: float) -> None:
+    """Of its center a reader would know too few digits."""
+    arc = circular(radius, complex(-radius, 0.0), sweep=10.0 / radius, count=2)
+    d = path_data(arc, 1e-12)
+    assert commands(d) == "MCC"
+    x, y = np.concatenate(read_path(d)).T
+    assert np.abs(x + y * y / (radius + np.hypot(radius + x, y))).max() <= 4e-16 * radius
+    assert y.max() == pytest.approx(10.0)
+
+
+def test_a_contour_that_is_a_point_draws_nothing(tmp_path: Path) -> None:
+    point = Contour(np.full((2, 3, 2), 5.0), np.ones(2))
+    write(tmp_path / "a.svg", [circle(), point])
+    assert svg_paths(tmp_path / "a.svg")[1] == "M5 -5"
+    shape = ss.read(tmp_path / "a.svg")
+    assert shape.loop_count == 1
+    assert shape.box == pytest.approx((-1.0, -1.0, 1.0, 1.0))
 
 
 def test_an_open_contour_is_not_closed_in_svg(tmp_path: Path) -> None:

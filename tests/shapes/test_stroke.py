@@ -16,6 +16,7 @@ from splinesdf.arclets.points import bezier_points
 from splinesdf.shapes.sources.stroke import Pen, stroke_region
 from splinesdf.shapes.sources.svg_path import parse_path, parse_until
 from tests.drawings import judged
+from tests.reading import areas
 from tests.shapes.test_boundary import area, loops
 
 Floats = NDArray[np.float64]
@@ -32,6 +33,7 @@ CURVES = {
     "its own center": ("M2 0A2 2 0 0 1 -2 0", 4.0),
     "smaller": ("M1 0A1 1 0 0 1 -1 0", 4.0),
     "quadratic": ("M0 0Q1 6 2 0", 3.0),
+    "bent by half the width where it starts": ("M0 0Q6 4-5 5", 29.998186611860387),
 }
 
 
@@ -225,3 +227,13 @@ def test_a_short_last_piece_shows_no_more_than_its_join_and_cap(
     distance = ss.signed_distance(shape, points)
     away = np.abs(distance) > 1e-9
     assert np.array_equal((distance < 0.0)[away], inside[away])
+
+
+def test_where_rounding_parts_a_curve_no_sliver_is_left() -> None:
+    path, width = CURVES["bent by half the width where it starts"]
+    assert np.abs(areas(stroked(path, Pen(width)))).min() > 1.0
+
+
+def test_a_curve_with_a_cusp_within_it_is_refused() -> None:
+    with pytest.raises(ss.InputError, match=r"cannot be resolved near t = 0\.5"):
+        stroked("M20 20C80 80 20 80 80 20", Pen(9.0))

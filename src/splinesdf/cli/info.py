@@ -8,11 +8,10 @@ from typing import Any
 
 import click
 
-import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.console import answer, answering
 from splinesdf.cli.pipes import SHAPE
-from splinesdf.cli.shapes import holds_fit, read_shape, reading_options
+from splinesdf.cli.shapes import holds_fit, load_fit, read_shape, reading_options
 
 Described = tuple[dict[str, str], dict[str, Any]]
 
@@ -27,7 +26,9 @@ def info(files: tuple[str, ...], reading: dict[str, Any], measure: bool) -> None
 
     With --json: an object, or a list of them if there are several files.
     """
-    found = [_fit(file) if holds_fit(file) else _shape(file, reading, measure) for file in files]
+    found = [
+        _fit(file, reading) if holds_fit(file) else _shape(file, reading, measure) for file in files
+    ]
     figures = [one for _, one in found]
 
     def show() -> None:
@@ -39,8 +40,8 @@ def info(files: tuple[str, ...], reading: dict[str, Any], measure: bool) -> None
     answer(figures if len(files) > 1 else figures[0], show)
 
 
-def _fit(file: str) -> Described:
-    spline = ss.load(file)
+def _fit(file: str, reading: dict[str, Any]) -> Described:
+    spline = load_fit(file, reading)
     made = spline.made
     pairs = {
         "fit": spline.name or file,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -184,14 +183,10 @@ def _files(
     for name, value in options.items():
         if value and not any(is_used(_suffix(output), name) for output in outputs):
             check_format(outputs[0], **{name: value})
-    result, seen = {}, set[str]()
+    result = {}
     for output in outputs:
         used = {key: value for key, value in options.items() if is_used(_suffix(output), key)}
         check_format(output, **used)
-        place = os.path.realpath(output)
-        if place in seen:
-            raise ss.InputError(f"expected different files, got {output!r} twice: name another")
-        seen.add(place)
         result[output] = used
     check_outputs(shape, *outputs)
     return result

@@ -13,7 +13,7 @@ import shutil
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.shell_completion import CompletionItem
@@ -27,7 +27,13 @@ from splinesdf.io.examples import EXAMPLES
 _PIPE = re.compile(r"(?:(\w+):)?-")
 
 
-class _File(click.ParamType[str]):
+if TYPE_CHECKING:
+    _Parameter = click.ParamType[str]
+else:
+    _Parameter = click.ParamType  # which older releases do not take an index of
+
+
+class _File(_Parameter):
     """A file's name, or a format and a dash; click takes types of a class of its own."""
 
     name = "file"

@@ -8,13 +8,13 @@ from typing import Any
 import click
 import numpy as np
 
-import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.console import answer, answering, as_json, note, working
 from splinesdf.cli.pipes import OUTPUT, SHAPE, TABLE
 from splinesdf.cli.shapes import (
     check_outputs,
     holds_fit,
+    load_fit,
     read_shape,
     reading_options,
 )
@@ -37,7 +37,7 @@ def query(source: str, points: str, output: str | None, reading: dict[str, Any])
     shape's gradient on the boundary itself.
     """
     if holds_fit(source):
-        spline = ss.load(source)
+        spline = load_fit(source, reading)
         ask: Callable[[Any], Any] = spline.value_and_gradient
     else:
         shape = read_shape(source, reading)

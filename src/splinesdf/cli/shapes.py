@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,8 @@ _NAMES = (
     "location",
     "limits",
 )
+# What those are called on the command line that are not called so.
+_CALLED = {"layers": "layer", "ids": "id", "location": "axis"}
 
 
 def reading_options(command: Command) -> Command:
@@ -143,12 +146,28 @@ def holds_fit(path: str) -> bool:
     return suffix == ".npz" or (suffix == ".json" and is_fit(Path(path)))
 
 
-def check_outputs(source: str, *outputs: str | None) -> None:
-    """Refuse, before the work, files that cannot be written or that are its source."""
-    for output in outputs:
-        if output is None:
+def load_fit(path: str, reading: Mapping[str, Any]) -> ss.SplineSDF:
+    """A saved fit, of which options of reading but limits say nothing: those are refused."""
+    for name, value in reading.items():
+        if name == "limits" or value is None or value is False or value == ():
             continue
+        option = "--" + _CALLED.get(name, name).replace("_", "-")
+        raise ss.InputError(
+            f"expected a shape for {option}, got a saved fit, {path!r:.200}: leave it out, or give "
+            "the file that the fit was made of"
+        )
+    return ss.load(path, limits=reading["limits"])
+
+
+def check_outputs(source: str, *outputs: str | None) -> None:
+    """Refuse, before the work, files that cannot be written, are its source, or are there twice."""
+    seen = set[str]()
+    for output in filter(None, outputs):
         check_target(output)
+        place = os.path.realpath(output)
+        if place in seen:
+            raise ss.InputError(f"expected different files, got {output!r} twice: name another")
+        seen.add(place)
         try:
             lost = Path(output).samefile(source)
         except (OSError, ValueError):  # one of them does not exist

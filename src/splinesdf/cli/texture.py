@@ -10,7 +10,7 @@ import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.console import answer, answering, note, working
 from splinesdf.cli.pipes import OUTPUT, SHAPE
-from splinesdf.cli.shapes import check_outputs, holds_fit, read_shape, reading_options
+from splinesdf.cli.shapes import check_outputs, holds_fit, load_fit, read_shape, reading_options
 from splinesdf.rasters.images import checked_format
 
 
@@ -52,7 +52,7 @@ def texture(
     TIFF and NPY: the distances, negative inside.
     """
     checked_format(output, bits)
-    shape = ss.load(source) if holds_fit(source) else read_shape(source, reading)
+    shape = load_fit(source, reading) if holds_fit(source) else read_shape(source, reading)
     check_outputs(source, output)
     with working("computing distances"):
         found = ss.texture(shape, texels, range=width, domain=domain, rows=rows)

@@ -14,6 +14,7 @@ from splinesdf.cli.pipes import OUTPUT, SHAPE
 from splinesdf.cli.shapes import (
     check_outputs,
     holds_fit,
+    load_fit,
     read_shape,
     reading_options,
     tolerance_of,
@@ -99,4 +100,4 @@ def _spline(file: str, reading: dict[str, Any], tolerance: float | None) -> ss.S
         raise ss.InputError(
             f"expected a shape for --tolerance, got a saved fit, {file!r}: it has its own"
         )
-    return ss.load(file)
+    return load_fit(file, reading)

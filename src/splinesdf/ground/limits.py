@@ -20,6 +20,9 @@ from splinesdf.ground.arrays import whole
 
 # Of geometries within geometries. More: Python's own calls, 1000 deep, run out.
 _DEEPEST = 300
+# Of any other. More: kernels have no 64-bit number for it; fewer: files that a large machine has
+# memory for could not be read.
+_LARGEST = 2**53
 
 
 class TooMuch(InputError):
@@ -76,7 +79,7 @@ class Limits:
 
     def __post_init__(self) -> None:
         for name in NAMES:
-            most = _DEEPEST if name == "nesting" else None
+            most = _DEEPEST if name == "nesting" else _LARGEST
             value = whole(getattr(self, name), f"the limit {name!r}", least=1, most=most)
             object.__setattr__(self, name, value)
 

@@ -268,8 +268,6 @@ def _beside_curves(curves: Sequence[Floats], off: float) -> Floats:
         ways = np.diff(curve, axis=0)
         length = np.hypot(ways[:, 0], ways[:, 1])
         ends = np.cumsum(length)
-        if ends[-1] == 0.0:
-            continue
         number = max(_OF_A_CURVE, _BESIDE // len(curves))
         rows = np.searchsorted(ends, ends[-1] * (np.arange(number) + 0.5) / number)
         rows = rows[length[rows] > 0.0]

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Unpack
+from typing import BinaryIO, Unpack
 
 import numpy as np
 
@@ -27,6 +27,10 @@ from splinesdf.io.readers.source import (
     read_options,
 )
 from splinesdf.shapes.shape import Shape
+
+# Bytes of a file that are read at a time. More: memory is taken for those that are not there;
+# fewer: more calls.
+_BLOCK = 1 << 20
 
 
 @read_options
@@ -244,13 +248,24 @@ def content_of(file: Path, most: int) -> bytes:
             raise InputError("expected a regular file, got a pipe or a device")
         length = file.stat().st_size
         with file.open("rb") as opened:
-            content = opened.read(most + 1) if length <= most else b""
+            content = _read_some(opened, most + 1) if length <= most else b""
         if length > most or len(content) > most:  # it may have grown since
             raise too_much("bytes", f"expected a file of up to {most:,} bytes, got {length:,}")
         return content
+    except InputError:  # a ValueError as well
+        raise
     except FileNotFoundError as error:
         raise InputError(f"the file does not exist in {str(file.parent)!r}") from error
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror or error}") from error
     except ValueError as error:
         raise InputError(f"expected a file's path, got one with {error}") from error
+
+
+def _read_some(opened: BinaryIO, most: int) -> bytes:
+    """All of an open file, or so many bytes of it; memory is taken for what there is only."""
+    parts, length = [], 0
+    while part := opened.read(min(_BLOCK, most - length)):
+        parts.append(part)
+        length += len(part)
+    return b"".join(parts)

@@ -21,8 +21,9 @@ _SHORTEST = 1e-3
 # offset, along its tangent, than this share of the tolerance. Larger: gaps and overlaps are seen;
 # smaller: far out, rounding in tangents makes corners.
 _DOUBLED = 1e-3
-# Room for segments at first.
-_ROOM = 64
+# Room for segments at first, 32 KB. Fewer: segments that do not fit are found, and counted one by
+# one where they would be joined, and all are looked for once more; more: memory is touched in vain.
+_ROOM = 1024
 
 
 def trimmed(

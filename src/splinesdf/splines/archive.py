@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import LARGEST, Floats, Ints, largest_coordinate, positive
 from splinesdf.ground.atomic import atomic_file
+from splinesdf.ground.limits import Limits, using
 from splinesdf.ground.npz import Fields, read_npz, write_npz
 from splinesdf.ground.paths import as_path, shortened
 from splinesdf.meshes import Grid, Mesh, Quadtree
@@ -84,8 +85,8 @@ def write_archive(path: str | os.PathLike[str], archive: Archive) -> None:
         write_fields(file, fields)
 
 
-def read_archive(path: str | os.PathLike[str]) -> Archive:
-    """Read and check a file; nothing in it is ever run.
+def read_archive(path: str | os.PathLike[str], limits: Limits) -> Archive:
+    """Read and check a file; nothing in it is ever run, and its shape has these limits.
 
     Raises
     ------
@@ -94,7 +95,8 @@ def read_archive(path: str | os.PathLike[str]) -> Archive:
     """
     fields = (read_json if _is_json(path) else read_npz)(as_path(path))
     try:
-        return _checked(fields)
+        with using(limits):
+            return _checked(fields)
     except InputError as error:
         name = shortened(str(path))
         raise InputError(f"{name!r} is not a usable saved fit: {error}") from error

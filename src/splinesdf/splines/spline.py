@@ -32,7 +32,6 @@ from splinesdf.splines.archive import (
     Archive,
     archive_dict,
     archive_from,
-    read_archive,
     write_archive,
 )
 from splinesdf.splines.border import border_of, extend_lattice
@@ -382,11 +381,6 @@ class SplineSDF:
 def _check_outside(outside: str) -> None:
     if outside not in ("extend", "nan"):
         raise InputError(f"expected outside 'extend' or 'nan', got {outside!r:.60}")
-
-
-def load(path: str | os.PathLike[str]) -> SplineSDF:
-    """Read a spline that `SplineSDF.save` wrote; raises `InputError` if it is not one."""
-    return SplineSDF(*read_archive(path))
 
 
 def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:

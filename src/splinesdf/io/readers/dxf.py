@@ -11,7 +11,7 @@ from __future__ import annotations
 import logging
 import math
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
@@ -26,6 +26,7 @@ from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source, printable
 from splinesdf.shapes.joining import are_open, joined
 from splinesdf.shapes.loops import PRINTED_GAP, check_count, extent
+from splinesdf.shapes.parts import groups
 from splinesdf.shapes.region import Loops
 
 # Millimeters of $INSUNITS, by its numbers.
@@ -36,6 +37,9 @@ _UNITS = {
 # Ends of edges drawn twice agree to this share of the drawing's size: it is what printed digits
 # leave. Larger: edges side by side count once; smaller: edges drawn twice do not.
 _SAME = 1e-9
+# So many edges with the same ends and middle are compared in full. More: time grows like the square
+# of edges that have nothing else in common; fewer: of as many, those drawn again count again.
+_MOST_ALIKE = 16
 # How ezdxf says that it took out an entity, which would be missing without a word.
 _REMOVED = re.compile(
     r"(?:Removed|Deleted) (?:entity |standalone |(?:invalid )?DXF entity )?([A-Z0-9]+)\(#"
@@ -150,8 +154,7 @@ def _edges(document: Any, options: Options, left_out: Counter[str]) -> Iterator[
                 for pieces in EDGES[kind](entity):
                     count += len(pieces)
                     check_count(count)
-                    if pieces:
-                        yield _Edge(kind, seen.mapped(pieces))
+                    yield _Edge(kind, seen.mapped(pieces))
             except Flat as reason:
                 left_out[f"{kind} ({reason})"] += 1
 
@@ -221,21 +224,35 @@ def _resolved(document: Any, frozen: frozenset[str]) -> Iterator[Seen]:
 def _once(edges: list[_Edge]) -> tuple[list[_Edge], int]:
     """Edges without those that are drawn again, either way round; how many those are."""
     size, _ = extent([edge.pieces for edge in edges])
-    grid = _SAME * size
-    seen: set[tuple[int, ...]] = set()
+    near = _SAME * size
+    # The same from both ends, so that edges drawn again have equal keys.
+    middles = [_middle(edge.pieces) for edge in edges]
+    ends = [point for edge in edges for point in (edge.pieces[0][0], edge.pieces[-1][-1])]
+    place = groups(np.array(middles + ends), near)
+    inner, outer = place[: len(edges)], np.sort(place[len(edges) :].reshape(-1, 2), axis=1)
+    alike: dict[tuple[int, ...], list[list[Floats]]] = defaultdict(list)
     kept = []
-    for edge in edges:
-        pieces = edge.pieces
-        middle = pieces[len(pieces) // 2]
-        inner = middle.mean(axis=0) if len(pieces) % 2 else middle[0]
-        ends = sorted(
-            tuple(np.rint(point / grid).astype(object)) for point in (pieces[0][0], pieces[-1][-1])
-        )
-        key = (*ends[0], *ends[1], *np.rint(inner / grid).astype(object), len(pieces))
-        if key not in seen:
-            seen.add(key)
+    for edge, middle, (first, last) in zip(edges, inner.tolist(), outer.tolist(), strict=True):
+        others = alike[len(edge.pieces), middle, first, last]
+        if not any(_same(edge.pieces, other, near) for other in others[:_MOST_ALIKE]):
+            others.append(edge.pieces)
             kept.append(edge)
     return kept, len(edges) - len(kept)
+
+
+def _middle(pieces: list[Floats]) -> Floats:
+    middle = pieces[len(pieces) // 2]
+    inner: Floats = middle.mean(axis=0) if len(pieces) % 2 else middle[0]
+    return inner
+
+
+def _same(one: list[Floats], other: list[Floats], near: float) -> bool:
+    """Whether two edges have the same control points, in order or turned around."""
+    turned = [piece[::-1] for piece in reversed(other)]
+    return any(
+        all(len(a) == len(b) and np.abs(a - b).max() <= near for a, b in zip(one, way, strict=True))
+        for way in (other, turned)
+    )
 
 
 def _joined(loops: Loops, options: Options) -> tuple[Loops, list[str]]:

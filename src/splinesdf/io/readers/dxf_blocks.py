@@ -52,7 +52,7 @@ class Seen(NamedTuple):
 def seen_entities(document: Any, frozen: frozenset[str]) -> Iterator[Seen]:
     """All entities of the model space, those in blocks as often as these are inserted.
 
-    Insertions themselves are left out, but for those that are invisible or of no block.
+    Insertions themselves are left out, but for those that are invisible, nowhere, or of no block.
 
     Parameters
     ----------
@@ -79,8 +79,12 @@ def _seen(entities: Iterable[Any], around: Seen, frozen: frozenset[str]) -> Iter
             inner = [one for one in block if one.dxftype() != "ATTDEF"]
             seen = seen._replace(frozen=seen.frozen or own in frozen)
             for insert in entity.multi_insert() if entity.mcount > 1 else (entity,):
-                matrix = np.reshape(list(insert.matrix44()), (4, 4)) @ around.map
-                yield from _seen(inner, seen._replace(map=matrix), frozen)
+                with np.errstate(over="ignore", invalid="ignore"):
+                    matrix = np.reshape(list(insert.matrix44()), (4, 4)) @ around.map
+                if np.isfinite(matrix).all():
+                    yield from _seen(inner, seen._replace(map=matrix), frozen)
+                else:  # it is inserted nowhere
+                    yield seen
         # Dimensions, leaders, multiple lines. An insertion of no block would be an error.
         elif entity.dxftype() != "INSERT" and isinstance(entity, SupportsVirtualEntities):
             yield from _seen(virtual_entities(entity), seen, frozen)

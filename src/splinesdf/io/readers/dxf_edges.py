@@ -27,6 +27,10 @@ _LARGEST = 1e100
 _SLIGHT = 1e-3
 # Points whose heights differ by less than this share of the entity's size are in one plane.
 _LEVEL = 1e-9
+# Fit points by which a closed spline goes on beyond both ends. What is assumed there of the ends is
+# halved at least with each point, and so below rounding where the spline is. Fewer: a corner where
+# it begins; more: time.
+_AROUND = 64
 
 
 class Flat(Exception):
@@ -87,8 +91,6 @@ def _ellipse(entity: Any) -> Iterator[list[Floats]]:
         raise Flat("tilted")
     ratio, up = float(entity.dxf.ratio), _mirror(entity)
     _check_usable(x, y, ax, ay, ratio, entity.dxf.start_param, entity.dxf.end_param)
-    if ratio == 0.0:
-        raise Flat("of no width")
     # The minor axis is the extrusion times the major one.
     minor = -up * ay * ratio, up * ax * ratio
     first, last = float(entity.dxf.start_param), float(entity.dxf.end_param)
@@ -163,22 +165,58 @@ def _slight(start: Floats, end: Floats, bulge: float) -> Floats:
 
 
 def _spline(entity: Any) -> Iterator[list[Floats]]:
+    closed = bool(entity.closed) and not entity.control_point_count()
     try:
-        tool = entity.construction_tool()
-    except (ValueError, ArithmeticError) as error:
+        tool = _closed_through(entity) if closed else entity.construction_tool()
+    except (ValueError, ArithmeticError, IndexError) as error:
         raise Flat("without a curve") from error
     control = np.array([tuple(point) for point in tool.control_points], dtype=np.float64)
     _check_level(control)
     weights = np.array(tool.weights(), dtype=np.float64)
+    knots = np.array(tool.knots(), dtype=np.float64)
+    # ezdxf rounds knots to the file's tolerance, which may be much of their range.
+    own = np.array(entity.knots, dtype=np.float64)
+    if len(own) == len(knots) and np.all(np.diff(own) >= 0.0):
+        knots = own
     try:
-        yield nurbs_pieces(
+        pieces = nurbs_pieces(
             control[:, :2],
             degree=int(tool.degree),
-            knots=np.array(tool.knots(), dtype=np.float64),
+            knots=knots,
             weights=weights if len(weights) else None,
         )
     except InputError as error:
         raise Flat(str(error)[:80]) from error
+    if closed and not _tangents(entity):
+        pieces = pieces[_AROUND:-_AROUND]
+        pieces[-1][-1] = pieces[0][0]
+    yield pieces
+
+
+def _tangents(entity: Any) -> list[Any]:
+    """The directions at a spline's start and end, or none if the file does not say both."""
+    names = ("start_tangent", "end_tangent")
+    return [entity.dxf.get(name) for name in names] if all(map(entity.dxf.hasattr, names)) else []
+
+
+def _closed_through(entity: Any) -> Any:
+    """The curve through a closed spline's fit points.
+
+    If the file does not say how it begins, it is as smooth there as elsewhere: it then goes through
+    the points again before its start and beyond its end.
+    """
+    from ezdxf.math import fit_points_to_cad_cv
+
+    points = np.array([tuple(point) for point in entity.fit_points], dtype=np.float64)
+    points = points[np.any(points != np.roll(points, -1, axis=0), axis=1)]
+    if len(points) < 3:
+        raise Flat("through fewer than three places")
+    _check_usable(*points.ravel())
+    if tangents := _tangents(entity):
+        return fit_points_to_cad_cv([*points, points[0]], tangents)
+    return fit_points_to_cad_cv(
+        points[np.arange(-_AROUND, len(points) + _AROUND + 1) % len(points)]
+    )
 
 
 def _check_level(points: Floats) -> None:

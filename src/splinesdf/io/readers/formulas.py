@@ -87,7 +87,7 @@ def _several(
                 raise InputError(f'expected an object with "x" and "y", got {_kind(entry)}')
             result.append(read(entry, ()))
             count += len(result[-1])
-            check_limit("formulas", count, "pieces of all formulas together")
+            _check_together(count)
         except InputError as error:
             raise InputError(f"{key.removesuffix('s')} {number}: {error}") from error
     return result
@@ -110,7 +110,13 @@ def _curve(entry: dict[str, Any], beside: tuple[str, ...]) -> list[Floats]:
     t = entry.get("t", _FULL_TURN)
     if not isinstance(t, list) or len(t) != 2 or any(not isinstance(end, float | str) for end in t):
         raise InputError('expected "t" to be [start, stop], each a number or a formula in quotes')
-    return compile_curve(parse_curve(entry["x"], entry["y"], (t[0], t[1])))
+    pieces = compile_curve(parse_curve(entry["x"], entry["y"], (t[0], t[1])))
+    _check_together(len(pieces))
+    return pieces
+
+
+def _check_together(count: int) -> None:
+    check_limit("formulas", count, "pieces of all formulas together")
 
 
 def _check_keys(entry: dict[str, Any], known: tuple[str, ...]) -> None:

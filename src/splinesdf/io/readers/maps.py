@@ -19,6 +19,8 @@ from splinesdf.io.readers.source import Options, Source
 from splinesdf.shapes.sources.geojson import Polygons, add_polygon, nothing_found, polygons_of
 
 _WKT = re.compile(r"\s*(?:([A-Za-z]+)|([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|([(),;=]))")
+# Coordinates beside x and y, which some programs write as a part of the word before.
+_HEIGHTS = re.compile(r"(?<=[A-Z])(?:ZM|Z|M)$")
 
 
 def geojson_reading(source: Source, options: Options) -> Reading:
@@ -76,7 +78,7 @@ def _tokens(text: str) -> Iterator[str]:
 def _geometry(tokens: list[str], at: int, found: Polygons, depth: int) -> int:
     """Read a geometry from a token on; the token after it."""
     check_limit("nesting", depth, "geometries within one another")
-    kind, at = _take(tokens, at).upper(), at + 1
+    kind, at = _HEIGHTS.sub("", _take(tokens, at).upper()), at + 1
     if kind != "GEOMETRYCOLLECTION":  # its geometries are elements each
         found.elements.append(f"{kind[:20]} {len(found.elements) + 1}")
     if at < len(tokens) and tokens[at].upper() in ("Z", "M", "ZM"):
@@ -104,11 +106,11 @@ def _geometry(tokens: list[str], at: int, found: Polygons, depth: int) -> int:
 
 
 def _nested(tokens: list[str], at: int) -> tuple[list[Any], int]:
-    """Lists within brackets, numbers without commas between them as one point."""
+    """Lists within brackets, EMPTY left out; numbers without commas between them are one point."""
     at = _expect(tokens, at, "(")
     stack: list[list[Any]] = [[]]
     point: list[float] = []
-    while stack:
+    while True:  # up to the last bracket, or there is no token to take
         token, at = _take(tokens, at), at + 1
         if token == "(":
             stack.append([])
@@ -122,12 +124,11 @@ def _nested(tokens: list[str], at: int) -> tuple[list[Any], int]:
                 if not stack:
                     return done, at
                 stack[-1].append(done)
-        else:
+        elif token.upper() != "EMPTY":
             try:
                 point.append(float(token))
             except ValueError as error:
                 raise InputError(f"expected a number, got {token[:30]!r}") from error
-    raise AssertionError  # the loop ends at the last bracket
 
 
 def _take(tokens: list[str], at: int) -> str:

@@ -29,13 +29,34 @@ def points_reading(source: Source, options: Options) -> Reading:
 
     A polygon's last point is always joined to its first, whatever ``close`` says.
     """
-    loops = []
-    for line, points in read_blocks(source.text(), finite=True, columns=options.columns):
+    loops, text = [], source.text()
+    for line, points in read_blocks(text, finite=True, columns=options.columns):
         try:
             loops.append(polygon(points))
         except InputError as error:
             raise InputError(f"points from line {line} on: {error}") from error
+    distances = _distances(text)
+    if len(distances) > 1 and options.fill is None:
+        raise InputError(
+            f"expected contours of one distance, got {len(distances)} distances "
+            f"({', '.join(distances)[:60]}): keep the lines of one, or give fill='evenodd' (--fill "
+            "evenodd) to fill by nesting, 'nonzero' to fill all that any of them encloses"
+        )
     return polygons_reading(loops, source.stem, options)
+
+
+def _distances(text: str) -> list[str]:
+    """The distances of a table of contours as `write` has it; none of another table."""
+    rows = (_fields(line.partition("#")[0].strip()) for line in lines_of(text))
+    names = [name.lower() for name in next(filter(None, rows))]
+    if not {"contour", "distance"} <= set(names):
+        return []
+    contour, distance = names.index("contour"), names.index("distance")
+    found: dict[str, str] = {}
+    for row in filter(None, rows):
+        if found.setdefault(row[contour], row[distance]) != row[distance]:
+            return []  # one of each point, not of the contour
+    return list(dict.fromkeys(found.values()))
 
 
 def polygons_reading(
@@ -181,10 +202,17 @@ def _is_word(field: str) -> bool:
 def is_number(field: str) -> bool:
     """Whether a text is a number."""
     try:
-        float(field)
+        _number(field)
     except ValueError:
         return False
     return True
+
+
+def _number(field: str) -> float:
+    """A number as files have it: not 4_0, which is 40 in Python only."""
+    if "_" in field:
+        raise ValueError("not a number")
+    return float(field)
 
 
 def _point(
@@ -201,7 +229,7 @@ def _point(
         raise InputError(f"line {line}: expected {max(places) + 1} columns, got {len(fields)}")
     chosen = [fields[k] for k in places]
     try:
-        x, y = float(chosen[0]), float(chosen[1])
+        x, y = _number(chosen[0]), _number(chosen[1])
     except ValueError:
         shown = chosen[1 if is_number(chosen[0]) else 0]
         raise InputError(f"line {line}: expected a number, got {_short(shown)}") from None

@@ -13,6 +13,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source
@@ -63,7 +65,7 @@ def svg_reading(source: Source, options: Options) -> Reading:
     said = "centre" if root.get("data-stroke") == "centre" else "none"
     drawing = _by_paint(elements, options.stroke or said)
     fills, repeats = _fills(drawing.fills, options, document.found)
-    lines = _closed_lines(drawing.lines, options)
+    lines = _closed_lines(_going_somewhere(drawing.lines, document.found), options)
     outlined = [Part(drawn.number, stroked(drawn, document)) for drawn in drawing.outlined]
     notes = (*_notes(drawing, document.found), *repeats_note(repeats), *lines.notes)
     if unit := unit_note(root):
@@ -146,6 +148,18 @@ def _once(elements: list[Drawn], repeats: list[str]) -> tuple[list[Drawn], list[
             seen[key] = name
             result.append(drawn)
     return result, repeats
+
+
+def _going_somewhere(elements: list[Drawn], found: Found) -> list[Drawn]:
+    """Elements with lines that have a length; dots enclose nothing."""
+    result = []
+    for drawn in elements:
+        loops = [loop for loop in drawn.loops if np.ptp(np.concatenate(loop), axis=0).any()]
+        if loops:
+            result.append(replace(drawn, loops=loops))
+        else:
+            found.left_out[f"{drawn.tag} without area"] += 1
+    return result
 
 
 def _closed_lines(elements: list[Drawn], options: Options) -> _Lines:

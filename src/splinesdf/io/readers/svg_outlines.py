@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from splinesdf.errors import InputError
+from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.svg_lengths import View, length
 from splinesdf.io.readers.svg_style import GEOMETRY
 from splinesdf.shapes.loops import check_place
@@ -53,11 +54,18 @@ def as_styled(element: ElementTree.Element, own: dict[str, str]) -> ElementTree.
 
 
 def _path(element: ElementTree.Element, view: View) -> Outline:
-    loops, closed, error = parse_until(element.get("d", ""))
-    return Outline(loops, closed, str(error) if error else "")
+    loops, closed, dots, error = parse_until(element.get("d", ""))
+    still = [[np.stack([place, place])] for place in dots]
+    return Outline([*loops, *still], [*closed, *(True for _ in still)], str(error) if error else "")
 
 
 def _polyline(element: ElementTree.Element, view: View) -> Outline:
+    corners, error = _corners(element)
+    return Outline([_sides(corners)], [False], error)
+
+
+def _corners(element: ElementTree.Element) -> tuple[Floats, str]:
+    """The points that are without an error, and the error."""
     text, error = element.get("points", ""), ""
     try:
         numbers = parse_numbers(text)
@@ -66,8 +74,11 @@ def _polyline(element: ElementTree.Element, view: View) -> Outline:
     if len(numbers) % 2:
         error = error or f"expected x and y of every point, got {len(numbers)} numbers"
         numbers = numbers[:-1]
-    corners = np.array(numbers, dtype=np.float64).reshape(-1, 2)
-    return Outline([list(np.stack([corners[:-1], corners[1:]], axis=1))], [False], error)
+    return np.array(numbers, dtype=np.float64).reshape(-1, 2), error
+
+
+def _sides(corners: Floats) -> list[Floats]:
+    return list(np.stack([corners[:-1], corners[1:]], axis=1))
 
 
 def _numbers_before(text: str) -> list[float]:
@@ -84,8 +95,11 @@ def _numbers_before(text: str) -> list[float]:
 
 
 def _polygon(element: ElementTree.Element, view: View) -> Outline:
-    loops, _, error = _polyline(element, view)
-    return Outline([loop + closing_piece(loop) for loop in loops], [True], error)
+    corners, error = _corners(element)
+    if len(corners) == 1:  # as the path M, Z: a stroke shows where it is
+        corners = corners.repeat(2, axis=0)
+    sides = _sides(corners)
+    return Outline([sides + closing_piece(sides)], [True], error)
 
 
 def _line(element: ElementTree.Element, view: View) -> Outline:

@@ -134,8 +134,6 @@ def _ellipse(arc: Floats, weight: float, tolerance: float) -> str | None:
     axes, radii, _ = np.linalg.svd(np.column_stack([u, v]))
     if not 0.0 < radii[0] <= _LARGEST_RADIUS * chord or radii[1] < _THINNEST * radii[0]:
         return None
-    if radii[0] - radii[1] <= 4.0 * np.finfo(np.float64).eps * radii[0]:
-        radii, axes = np.full(2, radii[0]), np.eye(2)
     degrees = math.degrees(math.atan2(axes[1, 0], axes[0, 0]))
     legs = np.array([middle - first, last - first])
     sweep = legs[0, 0] * legs[1, 1] - legs[0, 1] * legs[1, 0] > 0.0

@@ -138,8 +138,18 @@ def _ring(ring: Any, found: Polygons) -> Floats:
     points = isinstance(ring, list | tuple) and all(isinstance(p, list | tuple) for p in ring)
     if not points:
         raise InputError("expected a ring of points, got something else")
-    if not all(len(p) >= 2 and all(isinstance(x, Real) for x in p[:2]) for p in ring):
+    if not all(len(p) >= 2 and all(map(_is_number, p[:2])) for p in ring):
         raise InputError("expected points of at least two numbers, got others")
+    least, most = (some(map(len, ring), default=0) for some in (min, max))
+    if least < most > 3:  # with three there may be heights that are not known everywhere
+        raise InputError(
+            f"expected points of equally many numbers in a ring, got {least} and {most}: is a "
+            "comma missing?"
+        )
     if any(len(point) > 2 for point in ring) and not found.has_z:
         found.has_z.append(True)
     return np.array([point[:2] for point in ring], dtype=np.float64).reshape(-1, 2)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)

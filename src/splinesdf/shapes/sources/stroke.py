@@ -15,7 +15,7 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.sources.compiled import compile_arc, compile_curve
+from splinesdf.shapes.sources.straight import powers, straightened
 
 # Turns of less (radians) are none: compiled pieces and printed digits turn by less.
 _SMOOTH = 1e-6
@@ -111,6 +112,10 @@ def stroke_region(
 def _stroked(pieces: list[Floats], closed: bool, pen: Pen) -> Loops:
     if closed:
         pieces = [*pieces[:-1], np.concatenate([pieces[-1][:-1], pieces[0][:1]])]
+    parts = [straightened(piece) for piece in pieces]
+    pieces = [part for some in parts for part in some]
+    # As renderers draw it: where a piece turns back the stroke is round, as if it bent there.
+    turns = set(range(len(pieces))) - {last - 1 for last in accumulate(map(len, parts))}
     half = 0.5 * pen.width
     ends = [(end_tangent(piece, 0), end_tangent(piece, 1)) for piece in pieces]
     result: Loops = []
@@ -121,7 +126,8 @@ def _stroked(pieces: list[Floats], closed: bool, pen: Pen) -> Loops:
     ]
     for k in corners:
         following = ends[(k + 1) % len(pieces)][0]
-        result += _join(pieces[k][-1], ends[k][1], following, half, pen)
+        how = pen._replace(join="round") if k in turns else pen
+        result += _join(pieces[k][-1], ends[k][1], following, half, how)
     if not closed:
         result += _cap(pieces[0][0], -ends[0][0], half, pen)
         result += _cap(pieces[-1][-1], ends[-1][1], half, pen)
@@ -306,7 +312,7 @@ def _turn(one: Floats, other: Floats) -> float:
 
 def _turning_over(piece: Floats, half: float) -> list[float]:
     """Parameters between which the piece bends less than half the width everywhere, or more."""
-    x, y = (_powers(piece[:, axis]) for axis in (0, 1))
+    x, y = (powers(piece[:, axis]) for axis in (0, 1))
     dx, dy = np.polyder(x), np.polyder(y)
     ddx, ddy = np.polyder(dx), np.polyder(dy)
     bend: Floats = np.polysub(np.polymul(dx, ddy), np.polymul(dy, ddx))
@@ -315,16 +321,6 @@ def _turning_over(piece: Floats, half: float) -> list[float]:
     roots = np.roots(np.polysub(cubed, half * half * np.polymul(bend, bend)))
     real = roots.real[(np.abs(roots.imag) < _REAL) & (roots.real > 0.0) & (roots.real < 1.0)]
     return [0.0, *np.sort(real).tolist(), 1.0]
-
-
-def _powers(values: Floats) -> Floats:
-    """A Bernstein polynomial by falling powers of its parameter."""
-    degree = len(values) - 1
-    rising = [
-        math.comb(degree, k) * np.diff(values - values[0], k)[0] if k else 0.0
-        for k in range(degree + 1)
-    ]
-    return np.array(rising[::-1])
 
 
 def _join(at: Floats, before: Floats, after: Floats, half: float, pen: Pen) -> Loops:

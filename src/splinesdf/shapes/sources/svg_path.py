@@ -85,6 +85,7 @@ class Subpaths(NamedTuple):
 
     loops: list[list[Floats]]
     closed: list[bool]  # of each whether Z ends it; one that ends where it starts is not
+    dots: list[Floats]  # where others are that go nowhere, though drawn: a stroke may show them
     error: InputError | None
 
 
@@ -92,20 +93,25 @@ def parse_until(d: str) -> Subpaths:
     """The subpaths up to the first error in path data, as SVG draws them, and the error."""
     subpaths: list[list[Floats]] = [[]]
     closed: set[int] = set()
+    dots: dict[int, Floats] = {}
     error = None
     try:
-        _draw(d, subpaths, closed)
+        _draw(d, subpaths, closed, dots)
     except TooMuch:
         raise
     except InputError as first:
         error = first
     drawn = [number for number, pieces in enumerate(subpaths) if pieces]
     loops = [subpaths[number] for number in drawn]
-    return Subpaths(loops, [number in closed for number in drawn], error)
+    places = [place for number, place in dots.items() if not subpaths[number]]
+    return Subpaths(loops, [number in closed for number in drawn], places, error)
 
 
-def _draw(d: str, subpaths: list[list[Floats]], closed: set[int]) -> None:
-    """Draw path data into subpaths, the last one of which is being drawn; which ones Z ends."""
+def _draw(d: str, subpaths: list[list[Floats]], closed: set[int], dots: dict[int, Floats]) -> None:
+    """Draw path data into subpaths, the last one of which is being drawn.
+
+    Which ones Z ends, and where those are that have commands, but no pieces from them, is noted.
+    """
     here = start = handle = 0j
     previous = ""
     for number, (letter, values, at) in enumerate(_commands(d)):
@@ -118,12 +124,16 @@ def _draw(d: str, subpaths: list[list[Floats]], closed: set[int]) -> None:
             here = start = origin + complex(*values)
             subpaths.append([])
         elif command == "Z":
+            if previous == "M":
+                dots[len(subpaths) - 1] = _piece(here)[0]
             subpaths[-1] += closing_piece(subpaths[-1])
             closed.add(len(subpaths) - 1)
             here = start
             subpaths.append([])
         elif command == "A":
             end = origin + complex(*values[5:])
+            if here == end:  # omitted, SVG says; renderers stroke it as a line of no length
+                dots[len(subpaths) - 1] = _piece(here)[0]
             subpaths[-1] += _arc(here, end, values)
             here = end
         else:
