@@ -130,10 +130,16 @@ def answered(shape: ss.Shape, count: int, rounds: int, grid: bool) -> list[Conte
 
 
 def entries(shape: ss.Shape, count: int, rounds: int, grid: bool) -> list[Entry]:
-    """Seconds a point and largest errors, for the report."""
+    """Seconds a point and largest errors, those of peers against ours, for the report."""
     title = f"{shape.name}: {'grid' if grid else 'random points'}"
     return [
-        Entry(title, one.name, median(one.seconds), one.miss, f"{1e3 * one.ready:.3g}")
+        Entry(
+            title,
+            one.name,
+            median(one.seconds),
+            None if one.name == OURS else one.miss,
+            f"{1e3 * one.ready:,.3g}" if one.ready < 1.0 else f"{1e3 * one.ready:,.0f}",
+        )
         for one in answered(shape, count, rounds, grid)
     ]
 

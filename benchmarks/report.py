@@ -28,7 +28,7 @@ LIBRARIES = (
     "clipper2-py", "cavaliercontours-python", "svgelements", "ezdxf",
 )  # fmt: skip
 # Okabe and Ito's colors, which the color-blind tell apart, and markers for those who see none.
-_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", FAINT)
 _MARKERS = "osD^vP*X"
 # Inches of a plot: its width, a question's row, and what axis and legend take.
 _WIDE, _ROW, _AROUND = 8.0, 0.26, 1.5
@@ -112,7 +112,7 @@ def draw(section: Section, folder: Path, name: str) -> list[str]:
     axes.set_yticks(range(len(asked)), asked)
     axes.invert_yaxis()
     axes.grid(color=FAINT, alpha=0.3)
-    figure.legend(loc="outside upper center", ncols=4, frameon=False)
+    figure.legend(loc="outside upper center", ncols=3, frameon=False)
     names = [f"{name}-ratios.svg"]
     save_figure(figure, folder / names[0])
     if any(entry.error for entry in section.entries):
@@ -134,7 +134,7 @@ def _errors(section: Section, who: list[str]) -> Any:
             axes.plot(*zip(*some, strict=True), **_look(who, one))
     axes.set(xscale="log", yscale="log", xlabel=section.unit, ylabel=section.error)
     axes.grid(color=FAINT, alpha=0.3)
-    figure.legend(loc="outside upper center", ncols=4, frameon=False)
+    figure.legend(loc="outside upper center", ncols=3, frameon=False)
     return figure
 
 

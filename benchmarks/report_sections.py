@@ -60,8 +60,9 @@ def distance(quick: bool) -> Section:
         f"Exact signed distances of {count:,} points, beside libraries that know polylines, each "
         "given one within 1e-6 of the size, and beside methods on grids. The side is found by GEOS "
         "for all peers but scikit-fmm on the limaçon, and is part of their time. Slow peers get a "
-        "share of the points. FCPW computes in single precision, and its distances come out of its "
-        "list one by one.",
+        "share of the points. Errors are against ours, which are exact to rounding (`python -m "
+        "benchmarks.distance_errors`). FCPW computes in single precision, and its distances come "
+        "out of its list one by one.",
         [*found, *speed.small_entries(rounds)],
         "ns a point", 1e9, "largest error / size", "getting ready, ms", missing,
     )  # fmt: skip
@@ -127,8 +128,9 @@ def evaluation(quick: bool) -> Section:
         "Values, and values with gradients, of splines of a limaçon's distance, beside SciPy's: at "
         f"equal true error where |u| ≤ {ev.NEAR:g}, and at equal memory. At equal error SciPy's "
         "tables are the smaller ones, by as much as the column of bytes says: near a smooth curve "
-        "a bicubic has order 4 and one number a node. What has no gradient is asked for values "
-        "only.",
+        "a bicubic has order 4 and one number a node. At equal memory they are the more exact "
+        "ones, beside our uniform grid by one to two orders of magnitude. What has no gradient is "
+        "asked for values only.",
         found,
         "ns a point", 1e9, "true error", "table",
     )  # fmt: skip

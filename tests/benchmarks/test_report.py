@@ -159,6 +159,7 @@ def test_the_machine_is_described() -> None:
     ]  # fmt: skip
     assert lines[-1].endswith("no-such-library")
     assert "numpy" in lines[-2]
+    assert [line.partition(":")[0] for line in machine(("numpy",))][-1] == "versions"
 
 
 def test_plots_are_written_beside_the_report(tmp_path: Path) -> None:
