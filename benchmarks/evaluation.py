@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import os
 import statistics
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -191,16 +192,18 @@ def largest_within(memory: int) -> Method:
     return found
 
 
-def by_turns(runs: dict[str, Callable[[], object]]) -> dict[str, float]:
+def by_turns(
+    runs: dict[str, Callable[[], object]], read: Callable[[], float] = clock
+) -> dict[str, float]:
     """Median seconds of each."""
     for run in runs.values():
         run()  # compiles, warms up
     seconds: dict[str, list[float]] = {name: [] for name in runs}
     for _ in range(ROUNDS):
         for name, run in runs.items():
-            began = clock()
+            began = read()
             run()
-            seconds[name].append(clock() - began)
+            seconds[name].append(read() - began)
     return {name: statistics.median(times) for name, times in seconds.items()}
 
 
@@ -320,7 +323,8 @@ def main() -> None:
         {
             "points, value+gradient": lambda: reference.both and reference.both(points),
             "grid of nodes, value": lambda: reference.values.grid(SIDE, SIDE),
-        }
+        },
+        time.perf_counter,
     )
     print(f"\non {len(everywhere)} cores, {CELLS}² cells, ns a point")
     for name, median in seconds.items():

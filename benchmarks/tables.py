@@ -10,8 +10,9 @@ import os
 import platform
 import subprocess
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 
@@ -41,9 +42,15 @@ class Table:
 
 
 def clock() -> float:
-    """Seconds of CPU where this process is bound to one core, of the wall's clock elsewhere."""
+    """Seconds of CPU if this process is bound to one core when it first asks, else of the clock."""
+    return _timer()()
+
+
+@cache
+def _timer() -> Callable[[], float]:
+    # Looked up once: to ask for the cores takes longer than to read the time.
     alone = hasattr(os, "sched_getaffinity") and len(os.sched_getaffinity(0)) == 1
-    return time.process_time() if alone else time.perf_counter()
+    return time.process_time if alone else time.perf_counter
 
 
 def ratio(peer: float, ours: float) -> float:
