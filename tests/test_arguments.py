@@ -25,7 +25,7 @@ from splinesdf.fits.fit import fit_steps
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.offsets.offset import deviation
 from splinesdf.splines import quasi
-from splinesdf.splines.spline import bspline
+from splinesdf.splines.quasi import bspline
 from tests.not_numbers import NOT_NUMBERS, NOT_WHOLE, NUMBERS, not_arrays
 
 CORNERS = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])

@@ -54,6 +54,9 @@ LINES = {
     "<FitResult bar: 1,200 cells, error 9.80e-04 not proved>": lambda: result(
         replace(MADE, bound=None)
     ),
+    "<FitResult bar: 1,200 cells, error 4.00e-03 ≤ bound 9.85e-04>": lambda: result(
+        replace(MADE, tolerance=None, error=4e-3, stopped="given")
+    ),
     "<FitResult bar: 1,200 cells, error 5.00e-01 not proved > tolerance 1.00e-03>": lambda: result(
         replace(MADE, error=0.5, bound=None, stopped="max_cells")
     ),

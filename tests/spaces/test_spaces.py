@@ -7,8 +7,8 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.meshes import Grid, Quadtree
-from splinesdf.splines.quasi import quasi_interpolate
-from splinesdf.splines.spline import SplineSDF, bspline
+from splinesdf.splines.quasi import bspline, quasi_interpolate
+from splinesdf.splines.spline import SplineSDF
 from tests.naive_tree import refine
 from tests.named_shapes import UNIT
 

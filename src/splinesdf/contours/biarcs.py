@@ -64,6 +64,15 @@ def as_arcs(contour: Contour, *, tolerance: float) -> Contour:
     References
     ----------
     [Bolton1975] Biarc curves, Computer-Aided Design 7 (2), 89-92: the biarc of equal legs.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> ellipse = ss.Shape.from_formula("2*cos(t)", "sin(t)")
+    >>> contour = ss.offset(ellipse, 0.5, tolerance=1e-3)[0]
+    >>> arcs = ss.as_arcs(contour, tolerance=1e-3)
+    >>> len(contour.arcs), len(arcs.arcs)  # doctest: +SKIP
+    (8, 24)
     """
     if not isinstance(contour, Contour):
         raise InputError(f"expected a Contour, got {type(contour).__name__}: give them one by one")

@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf.contours.contour import Contour, evaluate, evaluate_each, unit
+from splinesdf.contours.contour import Contour, evaluate, unit
+from splinesdf.contours.extremes import evaluate_each
 from splinesdf.ground.arrays import Floats, Ints
 
 _EPS = float(np.finfo(np.float64).eps)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from splinesdf.contours.extremes import extremes
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import (
     LARGEST,
@@ -71,6 +72,21 @@ class Contour:
     page : (xmin, ymin, xmax, ymax), optional
         The page of the drawing that it is of, in the coordinates' unit. `write` mirrors y about
         its height.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> outer = ss.offset(square, 1)[0]
+    >>> outer
+    <Contour: at 1, 8 arcs, closed>
+    >>> round(outer.length, 6), round(outer.area, 6)  # 16 + 2 pi, 32 + pi
+    (22.283185, 35.141593)
+    >>> len(outer.points(tolerance=0.1)) > len(outer.points(tolerance=1.0))
+    True
+    >>> outer.svg_path().startswith("M")
+    True
+    >>> axes = outer.plot()
     """
 
     arcs: Floats
@@ -257,16 +273,6 @@ def evaluate(arcs: Floats, weights: Floats, parameters: Floats) -> Floats:
     return sums / (first + middle + last)
 
 
-def evaluate_each(arcs: Floats, weights: Floats, parameters: Floats) -> Floats:
-    """One point of each arc, at its own parameter: (n, 3, 2), (n,), (n,) -> (n, 2)."""
-    t = parameters[:, None]
-    middle, last = 2.0 * weights[:, None] * t * (1.0 - t), t**2
-    total = (1.0 - t) ** 2 + middle + last
-    first = arcs[:, 0]
-    result: Floats = first + (middle * (arcs[:, 1] - first) + last * (arcs[:, 2] - first)) / total
-    return result
-
-
 def to_origin(arcs: Floats) -> tuple[Floats, Floats]:
     """The arcs moved near to the origin, and by what to move them back, both without rounding.
 
@@ -325,30 +331,9 @@ def evened(arcs: Floats, weights: Floats) -> tuple[Floats, Floats]:
 
 def box(contours: Iterable[Contour]) -> tuple[float, float, float, float]:
     """The smallest box around the contours, to rounding: xmin, ymin, xmax, ymax."""
-    reached = np.concatenate([_extremes(contour.arcs, contour.weights) for contour in contours])
+    reached = np.concatenate([extremes(contour.arcs, contour.weights) for contour in contours])
     low, high = reached.min(axis=0), reached.max(axis=0)
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
-
-
-def _extremes(arcs: Floats, weights: Floats) -> Floats:
-    """Ends of arcs and points with a tangent along an axis: (n, 3, 2), (n,) -> (m, 2).
-
-    With u = t / (1 - t) the derivative is a + b u + c u², divided by what is positive.
-    """
-    first, w = arcs[:, 0], weights[:, None]
-    b = arcs[:, 2] - first
-    a = w * (arcs[:, 1] - first)
-    c = w * b - a
-    root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
-    q = -0.5 * (b + np.where(b < 0.0, -root, root))  # the larger one: nothing cancels
-    points = [arcs[:, 0], arcs[:, 2]]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        # t = u / (1 + u) of the roots u = q / c and a / q; 0 / 0 where all is zero.
-        for t in (q / (q + c), a / (q + a)):
-            inner = np.where((t > 0.0) & (t < 1.0), t, 0.0)
-            for axis in (0, 1):
-                points.append(evaluate_each(arcs, weights, inner[:, axis]))
-    return np.concatenate(points)
 
 
 def mirrored(contour: Contour, about: float = 0.0) -> Contour:

@@ -63,6 +63,14 @@ class Projection(NamedTuple):
         that of one of them. At the distance u, the level set's is curvature / (1 + curvature u).
         Exact to rounding on lines and Bézier pieces; good to about 1e-9 of the inverse of the
         size on arcs and formulas, which are compiled to pieces.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> found = ss.project(square, [[5.0, 1.0], [5.0, 5.0]])
+    >>> found.point.tolist(), found.curvature.tolist()
+    ([[4.0, 1.0], [4.0, 4.0]], [0.0, inf])
     """
 
     distance: Floats
@@ -103,6 +111,15 @@ def signed_distance(
     References
     ----------
     [Wang2014] Definition 2; negative inside, unlike its introduction.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> ss.signed_distance(square, [[1.0, 2.0], [4.0, 1.0], [7.0, 8.0]]).tolist()
+    [-1.0, 0.0, 5.0]
+    >>> ss.signed_distance(square, [[7.0, 8.0]], max_distance=2.0).tolist()
+    [2.0]
     """
     array = as_points(points)
     flat = array.reshape(-1, 2)
@@ -142,6 +159,16 @@ def signed_distance_grid(
     -------
     DistanceGrid
         Its distances are those of `signed_distance` at these points, found quicker.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> grid = ss.signed_distance_grid(square, 3, 2, domain=(2, 2, 8, 3))
+    >>> grid.x.tolist(), grid.y.tolist()
+    ([2.0, 5.0, 8.0], [2.0, 3.0])
+    >>> grid.distance.tolist()
+    [[-2.0, 1.0, 4.0], [-1.0, 1.0, 4.0]]
     """
     box = check_shape(shape).default_domain() if domain is None else check_domain(domain)
     x, y = grid_nodes(nx, ny, box)
@@ -175,6 +202,13 @@ def closest_point(shape: Shape, points: ArrayLike) -> Floats:
     -------
     ndarray, shape (..., 2)
         NaN where the point is not finite.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> ss.closest_point(square, [5.0, 1.0]).tolist()
+    [4.0, 1.0]
     """
     return project(shape, points).point
 
@@ -191,6 +225,14 @@ def project(shape: Shape, points: ArrayLike) -> Projection:
     -------
     Projection
         For points that are not finite: NaN, and piece -1.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> disk = ss.Shape.from_formula("2*cos(t)", "2*sin(t)")
+    >>> found = ss.project(disk, [3.0, 0.0])
+    >>> float(found.distance.round(9)), float(found.curvature.round(6))
+    (1.0, 0.5)
     """
     array = as_points(points)
     flat = array.reshape(-1, 2)

@@ -68,6 +68,16 @@ class FitResult:
         With the shape in ``.shape``, and what was asked and found in ``.made``.
     history : tuple of FitStep
         The rounds so far; the last one is this result's.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> result = ss.fit(ss.example("gamma1"), tolerance=0.01)
+    >>> result.error <= result.bound <= 0.01, result.stopped
+    (True, 'reached')
+    >>> float(result((0.5, 0.5))) < 0.0
+    True
+    >>> axes = result.plot()
     """
 
     spline: SplineSDF
@@ -180,7 +190,7 @@ def fit(
     ----------------
     space : {"hierarchical", "tensor", "uniform"}
     element : {"quadratic", "cubic"}
-        The B-splines, see `splinesdf.spaces`: C¹, of order 3 both. The cubic ones are for
+        The B-splines, see ``splinesdf.spaces``: C¹, of order 3 both. The cubic ones are for
         comparison: they have uniform space only, and neither level sets nor values outside.
     operator : str, optional
         The quasi-interpolant. Of the quadratic element S, W, V or P: unless given S, which needs
@@ -215,6 +225,14 @@ def fit(
     References
     ----------
     [Wang2014] Algorithm 2, with the true error in place of the error at cell centers.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> disk = ss.Shape.from_formula("cos(t)", "sin(t)")
+    >>> result = ss.fit(disk, tolerance=0.01, band=(-0.1, 0.1))
+    >>> abs(float(result.spline((1.05, 0.0))) - 0.05) <= result.bound <= 0.01
+    True
     """
     report = checked_report(progress)
     for result in fit_steps(shape, tolerance, **options):

@@ -78,6 +78,13 @@ def interpolate(
     References
     ----------
     [Wang2014] Section 3.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> result = ss.interpolate(ss.example("gamma1"), (8, 8), domain=(0, 0, 1, 1))
+    >>> result.cells, result.error <= result.bound
+    (64, True)
     """
     check_shape(shape)
     kind, grid = find_element(element), _grid(shape, mesh, domain)

@@ -20,6 +20,13 @@ class Progress(NamedTuple):
         Steps that are done.
     total : int or None
         All steps, if it is known how many there are.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> result = ss.fit(ss.example("gamma1"), tolerance=0.1, progress=print)  # doctest: +ELLIPSIS
+    1: ... cells, error ...
+    ...
     """
 
     text: str

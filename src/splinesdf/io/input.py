@@ -51,7 +51,7 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     fill : {"nonzero", "evenodd"}, optional
         Instead of the file's rule, of a drawing that of each element. Default: what the file says,
         else nonzero, or evenodd for lines. And unless it is given, a contour that is drawn several
-        times counts once.
+        times counts once, but for a drawing's elements under nonzero: these are as they are shown.
     close : bool
         Close open lines by a straight piece instead of refusing them. Those of a drawing are
         joined first where their ends meet, within 1e-6 of its size. (A fill is always closed.)
@@ -101,6 +101,16 @@ def read(path: str | os.PathLike[str], **options: Unpack[ReadOptions]) -> Shape:
     InputError
         If the file is missing, cannot be read, is not what its extension says, or asks for more
         than a limit, which the message names.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> from pathlib import Path
+    >>> drawing = '<svg width="4mm" viewBox="0 0 8 4"><rect width="4" height="2"/></svg>'
+    >>> _ = Path("bar.svg").write_text(drawing)
+    >>> shape = ss.read("bar.svg")
+    >>> shape, shape.unit
+    (<Shape bar: 1 loop, 4 pieces, nonzero>, 0.5)
     """
     with _parts(path, options) as parts:
         return united(parts)
@@ -127,6 +137,7 @@ def example(name: str, **options: Unpack[ReadOptions]) -> Shape:
 
     Examples
     --------
+    >>> import splinesdf
     >>> splinesdf.example("gamma2")
     <Shape gamma2: 1 loop, 96 pieces, nonzero>
     """

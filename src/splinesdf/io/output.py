@@ -88,7 +88,7 @@ def write(
         DXF and SVG: only lines and circular arcs, as G-code always has (see `as_arcs`).
     units : {"mm", "inch"}, optional
         DXF and G-code: what the numbers are. They are converted if the contours say how long
-        their unit is (`Contour.unit`); otherwise they are written as they are. Default: mm in
+        their unit is (``Contour.unit``); otherwise they are written as they are. Default: mm in
         G-code; in DXF the contours' own unit, if DXF has a number for it, or else mm; none if it
         is not known. Distances that name layers stay in the contours' unit.
     milling : Milling, optional
@@ -107,7 +107,7 @@ def write(
     -----
     From the contours' coordinates to the file's numbers, in this order:
 
-    1. Where y is mirrored, it becomes ``top + bottom - y`` of the page (`Contour.page`), so that
+    1. Where y is mirrored, it becomes ``top + bottom - y`` of the page (``Contour.page``), so that
        the page's lower edge comes to where its upper edge was; ``-y`` if the source has no page.
     2. ``origin`` is moved to (0, 0), a point being mirrored as the contours are.
     3. All is converted to ``units``.
@@ -121,6 +121,15 @@ def write(
         cannot be written.
     MissingExtraError
         For ``.dxf`` without ezdxf.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> ss.write("grown.svg", ss.offset(square, 1))
+    >>> ss.write("grown.nc", ss.offset(square, 1), milling=ss.Milling(feed=300, depth=2))
+    >>> round(sum(c.area for c in ss.offset(ss.read("grown.svg"), 0)), 6)  # 32 + pi
+    35.141593
     """
     check_known("write", options, WriteOptions)
     if isinstance(contours, SplineSDF):

@@ -26,6 +26,14 @@ class DistanceGrid(NamedTuple):
     x, y : ndarray, shapes (nx,), (ny,)
     distance : ndarray, shape (ny, nx)
         ``distance[j, i]`` is that of (x[i], y[j]).
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> x, y, distance = ss.signed_distance_grid(square, 5, 3)
+    >>> distance.shape == (len(y), len(x))
+    True
     """
 
     x: Floats

@@ -98,6 +98,17 @@ def offset(
     References
     ----------
     [Wang2014] section 5: an offset's swallowed parts are no part of a level set.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> [contour.distance for contour in ss.offset(square, [-1, 1])]
+    [-1.0, 1.0]
+    >>> [contour.area for contour in ss.offset(square, -1)]  # corners stay sharp
+    [4.0]
+    >>> [contour.distance for contour in ss.offset(square, step=-0.75)]
+    [-0.75, -1.5]
     """
     check_shape(shape)
     checked_report(progress)

@@ -3,6 +3,14 @@
 No function here but `drawn` without axes touches matplotlib's global state (pyplot): a figure is
 made by `new_figure`, drawn on, and written by `save_figure`. Blue is inside, vermilion outside:
 color-blind readers tell them apart. In print do the lines: those inside are dashed.
+
+Examples
+--------
+>>> import splinesdf as ss
+>>> shape = ss.example("gamma2")
+>>> result = ss.fit(shape, tolerance=0.01)
+>>> figure = ss.plot.overview(result, shape, ss.offset(shape, [-0.05, 0.05]))
+>>> ss.plot.save_figure(figure, "gamma2.png")
 """
 
 from splinesdf.plot.curves import plot_contours, plot_offsets

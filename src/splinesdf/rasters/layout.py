@@ -89,6 +89,20 @@ class Atlas:
         Pairs of characters that are nearer or farther than by their advance.
     name : str
     notes : tuple of str
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> disk = ss.Shape.from_formula("2 + 2*cos(t)", "2 + 2*sin(t)")
+    >>> icons = ss.atlas({"square": square, "disk": disk}, size=16, range=4)
+    >>> import json
+    >>> [glyph["name"] for glyph in json.loads(icons.layout())["glyphs"]]
+    ['square', 'disk']
+    >>> icons.pixels().dtype
+    dtype('uint8')
+    >>> icons.save("icons.png").name
+    'icons.json'
     """
 
     values: Floats

@@ -18,6 +18,7 @@ from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, positive, shown, whole
 from splinesdf.ground.atomic import atomic_file
 from splinesdf.ground.brief import brief
+from splinesdf.ground.glsl import check_name, comment, corners, number
 from splinesdf.meshes.mesh import Box, check_domain
 from splinesdf.rasters.images import MOST_TEXELS, Codes, checked_format, coded, write_image
 from splinesdf.shapes.shape import Shape
@@ -28,6 +29,17 @@ Rows = Literal["top", "bottom"]
 # A side that is whole in texels but for this share of one is not given another: it is rounding of
 # the quotient. Larger: a visible strip would be left out; smaller: sizes asked for come out larger.
 _WHOLE = 1e-9
+
+_SHADER = """\
+// {title}
+// {name}(picture, p): the signed distance at p, negative inside, in the shape's coordinates{axis}.
+// picture: {what}, its first row first, filtered linearly, clamped to its edge.
+float {name}(highp sampler2D picture, vec2 p) {{
+    const vec2 low = {low}, high = {high};
+    vec2 uv = (p - low) / (high - low);
+    return {distance};
+}}
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +65,19 @@ class Texture:
     name : str
     notes : tuple of str
         What is to be known of the values, one line each.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+    >>> picture = ss.texture(square, 7, range=2)
+    >>> picture.texel, picture.x.tolist()
+    ((1.0, 1.0), [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0])
+    >>> picture.values[3].round(6).tolist()[2:]
+    [-1.0, -2.0, -1.0, 0.0, 1.0]
+    >>> picture.pixels()[3].tolist()
+    [0, 128, 255, 255, 255, 128, 0]
+    >>> picture.save("square.npy")
     """
 
     values: Floats
@@ -133,6 +158,58 @@ class Texture:
                 range=self.range,
                 description=self._description(suffix),
             )
+
+    def to_glsl(self, name: str = "sdf", *, floats: bool = False) -> str:
+        """A function of GLSL that samples the texture at a point of the shape's coordinates.
+
+        Parameters
+        ----------
+        name : str
+            Of the function ``float sdf(highp sampler2D picture, vec2 p)``, for GLSL 3.30 and
+            GLSL ES 3.00 (WebGL 2) on.
+        floats : bool
+            Whether the picture holds distances (TIFF, NPY) and not the whole numbers of a PNG.
+
+        Returns
+        -------
+        str
+            The picture is uploaded with the row first that is first in ``values`` and the file.
+            Beyond its domain the function repeats the border.
+
+        Raises
+        ------
+        InputError
+            If GLSL does not take the name, or the domain is so far from the origin that float32
+            does not tell places in it apart.
+
+        Examples
+        --------
+        >>> import splinesdf as ss
+        >>> square = ss.Shape.from_points([[0, 0], [4, 0], [4, 4], [0, 4]])
+        >>> print(ss.texture(square, 7, range=2).to_glsl())
+        // Texture: 7 x 7 texels, range 2
+        // sdf(picture, p): the signed distance at p, negative inside, in the shape's coordinates.
+        // picture: a PNG's numbers, its first row first, filtered linearly, clamped to its edge.
+        float sdf(highp sampler2D picture, vec2 p) {
+            const vec2 low = vec2(-1.5, -1.5), high = vec2(5.5, 5.5);
+            vec2 uv = (p - low) / (high - low);
+            return (0.5 - texture(picture, vec2(uv.x, 1.0 - uv.y)).r) * 2.0;
+        }
+        <BLANKLINE>
+        """
+        check_name(name)
+        low, high = corners(self.domain)
+        place = "vec2(uv.x, 1.0 - uv.y)" if _turned(self.rows, self.y_down) else "uv"
+        sample = f"texture(picture, {place}).r"
+        return _SHADER.format(
+            title=comment(repr(self)[1:-1]),
+            name=name,
+            axis=", whose y points down" if self.y_down else "",
+            what="distances" if floats else "a PNG's numbers",
+            low=low,
+            high=high,
+            distance=sample if floats else f"(0.5 - {sample}) * {number(self.range)}",
+        )
 
     def _description(self, suffix: str) -> dict[str, Any]:
         said: dict[str, Any] = {

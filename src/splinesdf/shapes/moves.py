@@ -35,7 +35,14 @@ Combine = Callable[[Loops, Loops], Loops]
 
 
 def translate(shape: Shape, dx: float, dy: float) -> Shape:
-    """The shape moved by (dx, dy); page and unit stay."""
+    """The shape moved by (dx, dy); page and unit stay.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> ss.Shape.rectangle(0, 0, 2, 1).translate(1, 3).box
+    (1.0, 3.0, 3.0, 4.0)
+    """
     return _mapped(shape, shape.control + np.array([finite(dx, "dx"), finite(dy, "dy")]))
 
 
@@ -48,6 +55,12 @@ def scale(shape: Shape, factor: ArrayLike, *, about: ArrayLike = (0.0, 0.0)) -> 
         Of x and y apart, if there are two; negative ones mirror.
     about : array_like, shape (2,)
         The point that stays where it is.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> ss.Shape.rectangle(0, 0, 2, 1).scale(2, about=(2, 1)).box
+    (-2.0, -1.0, 2.0, 1.0)
     """
     by = as_floats(factor, "factor")
     if by.shape not in ((), (2,)) or not np.isfinite(by).all() or not by.all():
@@ -64,6 +77,12 @@ def rotate(shape: Shape, degrees: float, *, about: ArrayLike = (0.0, 0.0)) -> Sh
     degrees : float
         Quarter turns are exact.
     about : array_like, shape (2,)
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> ss.Shape.rectangle(0, 0, 2, 1).rotate(90).box
+    (-1.0, 0.0, 0.0, 2.0)
     """
     turn = math.remainder(finite(degrees, "degrees"), 360.0)
     angle = math.radians(turn)
@@ -73,17 +92,41 @@ def rotate(shape: Shape, degrees: float, *, about: ArrayLike = (0.0, 0.0)) -> Sh
 
 
 def union(shape: Shape, other: Shape) -> Shape:
-    """What is in this shape or in another: ``a | b``."""
+    """What is in this shape or in another: ``a | b``.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> one, other = ss.Shape.rectangle(0, 0, 2, 1), ss.Shape.rectangle(1, 0, 3, 1)
+    >>> one.union(other).area, (one | other).area
+    (3.0, 3.0)
+    """
     return _combined(shape, other, lambda a, b: regions.union([a, b]), "in either of two shapes")
 
 
 def intersection(shape: Shape, other: Shape) -> Shape:
-    """What is in this shape and in another: ``a & b``."""
+    """What is in this shape and in another: ``a & b``.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> one, other = ss.Shape.rectangle(0, 0, 2, 1), ss.Shape.rectangle(1, 0, 3, 1)
+    >>> one.intersection(other).box
+    (1.0, 0.0, 2.0, 1.0)
+    """
     return _combined(shape, other, regions.intersection, "common to two shapes")
 
 
 def difference(shape: Shape, other: Shape) -> Shape:
-    """What is in this shape and not in another: ``a - b``."""
+    """What is in this shape and not in another: ``a - b``.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> one, other = ss.Shape.rectangle(0, 0, 2, 1), ss.Shape.rectangle(1, 0, 3, 1)
+    >>> one.difference(other).box
+    (0.0, 0.0, 1.0, 1.0)
+    """
     return _combined(shape, other, regions.difference, "left of a shape without another")
 
 

@@ -76,6 +76,25 @@ class Shape:
     limits : Limits
         How many crossings its contours may have, which are found when first a distance is asked
         for: those that it was read with. ``dataclasses.replace(shape, limits=...)`` has others.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> shape = ss.Shape.from_formula("2*cos(t)", "2*sin(t)", name="disk")
+    >>> shape.loop_count, [round(side, 9) for side in shape.box], round(shape.area, 9)
+    (1, [-2.0, -2.0, 2.0, 2.0], 12.566370614)
+    >>> plate = ss.Shape.rectangle(-5, -3, 5, 3) - shape
+    >>> round(plate.area, 6)  # 60 - 4 pi
+    47.433629
+    >>> plate.contains([[0, 0], [4, 0]]).tolist(), plate.signed_distance([[4, 0]]).tolist()
+    ([False, True], [-1.0])
+    >>> [contour.distance for contour in plate.offset([-0.5])], plate.fit(0.5).stopped
+    ([-0.5, -0.5], 'reached')
+    >>> plate.default_domain(beyond=1.0)
+    (-7.0, -5.0, 7.0, 5.0)
+    >>> plate.piece(0).shape[1], len(plate.sample(3))
+    (2, 2)
+    >>> axes = plate.plot()
     """
 
     control: Floats
@@ -138,6 +157,13 @@ class Shape:
         InputError
             If a coordinate is not finite or above 1e60, the size is below 1e-60 or below 1e-9 of
             the coordinates, nothing is left, or ``fill`` is unknown.
+
+        Examples
+        --------
+        >>> import splinesdf as ss
+        >>> bow, chord = [[0, 0], [1, 2], [2, 0]], [[2, 0], [0, 0]]
+        >>> round(abs(ss.Shape.from_pieces([[bow, chord]]).area), 9)  # two thirds of 2 by 1
+        1.333333333
         """
         rule = fill_rule("nonzero" if fill is None else fill)
         closed, lost = kept_loops(loops, close=close)

@@ -2,13 +2,39 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from splinesdf.errors import MissingExtraError
 from splinesdf.ground.arrays import Floats
 from splinesdf.splines.triangles import Triangles
+
+if TYPE_CHECKING:
+    from splinesdf.splines.spline import SplineSDF
+
+
+def to_skfem(spline: SplineSDF) -> tuple[Any, Floats]:
+    """The spline for scikit-fem: the basis of its `triangles`, and the coefficients in it.
+
+    The basis is of ``ElementTriP2`` on a ``MeshTri``. With ``basis, vector = s.to_skfem()`` the
+    values at points (2, n) are ``basis.interpolator(vector)(x)``.
+
+    Raises
+    ------
+    InputError
+        As `triangles`.
+    MissingExtraError
+        Without scikit-fem.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> basis, vector = ss.fit(ss.example("gamma1"), tolerance=0.05).spline.to_skfem()
+    >>> len(vector) == int(basis.N)
+    True
+    """
+    return skfem_basis(spline.triangles())
 
 
 def skfem_basis(mesh: Triangles) -> tuple[Any, Floats]:

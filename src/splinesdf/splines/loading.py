@@ -23,5 +23,13 @@ def load(path: str | os.PathLike[str], *, limits: Limits | None = None) -> Splin
     ------
     InputError
         If the file is missing, no saved fit, damaged, or of a newer version.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> sdf = ss.fit(ss.example("gamma1"), tolerance=0.05).spline
+    >>> sdf.save("gamma1.json")
+    >>> bool(ss.load("gamma1.json")((0.3, 0.4)) == sdf((0.3, 0.4)))
+    True
     """
     return SplineSDF(*read_archive(path, checked_limits(limits)))

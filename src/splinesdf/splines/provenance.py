@@ -71,8 +71,8 @@ class Provenance:
         """The error and what it keeps, in a few words: "error 9.80e-04 ≤ bound 9.85e-04"."""
         kept = "not proved" if self.bound is None else f"≤ bound {self.bound:.2e}"
         asked = self.tolerance
-        missed = asked is not None and self.stopped not in ("reached", "given")
-        return f"error {self.error:.2e} {kept}" + (f" > tolerance {asked:.2e}" * missed)
+        kept_it = asked is None or self.stopped in ("reached", "given")
+        return f"error {self.error:.2e} {kept}" + ("" if kept_it else f" > tolerance {asked:.2e}")
 
     def __post_init__(self) -> None:
         # As plain Python values, so that they are written and compared as what they are.

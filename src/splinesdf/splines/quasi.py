@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from splinesdf.ground.arrays import Floats
-from splinesdf.meshes import Mesh
+from splinesdf.meshes import Grid, Mesh
 from splinesdf.spaces.element import Element
 from splinesdf.spaces.quadratic import QUADRATIC
 from splinesdf.spaces.space import interpolated, space_on
+from splinesdf.spaces.tensor import bspline_coefficients, tensor_ordinates
 from splinesdf.splines.spline import SplineSDF
 
 Function = Callable[[Floats], Floats]
@@ -44,3 +45,15 @@ def quasi_interpolate(
     operator = element.defaults["given"] if operator is None else operator
     numbers = interpolated(space_on(mesh, element), function, operator)
     return SplineSDF(mesh, numbers, element=element)
+
+
+def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:
+    """The B-spline of cell (i, j) of a grid, -1 and m, n being the ring around the domain.
+
+    It is positive inside an octagon in the 3 x 3 cells around (i, j); all of them sum to one.
+
+    References
+    ----------
+    [Wang2014] Theorem 5 and the 41 values after it.
+    """
+    return SplineSDF(mesh, tensor_ordinates(mesh, bspline_coefficients(mesh, i, j)))

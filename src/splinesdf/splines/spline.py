@@ -19,7 +19,7 @@ from splinesdf.ground.brief import brief, counted, without_caches
 from splinesdf.ground.card import Picture, card
 from splinesdf.ground.doors import public
 from splinesdf.ground.values import by_value
-from splinesdf.meshes import Box, Grid, Mesh
+from splinesdf.meshes import Box, Mesh
 from splinesdf.meshes.lattice import DistanceGrid, Nodes, grid_nodes
 from splinesdf.meshes.mesh import check_domain, frames
 from splinesdf.shapes.shape import Shape
@@ -27,7 +27,6 @@ from splinesdf.spaces.element import Element
 from splinesdf.spaces.quadratic import QUADRATIC
 from splinesdf.spaces.space import Space, space_on
 from splinesdf.spaces.tables import Evaluated
-from splinesdf.spaces.tensor import bspline_coefficients, tensor_ordinates
 from splinesdf.splines.archive import (
     Archive,
     archive_dict,
@@ -35,10 +34,11 @@ from splinesdf.splines.archive import (
     write_archive,
 )
 from splinesdf.splines.border import border_of, extend_lattice
-from splinesdf.splines.finite_elements import skfem_basis
+from splinesdf.splines.finite_elements import to_skfem
 from splinesdf.splines.level_sets import contours
 from splinesdf.splines.nodes import values_at_nodes
 from splinesdf.splines.provenance import Provenance
+from splinesdf.splines.shader import to_glsl
 from splinesdf.splines.tables import Border
 from splinesdf.splines.triangles import Triangles, quadratic_triangles
 
@@ -88,8 +88,29 @@ class SplineSDF:
     made : Provenance or None
         From what request it was made, and how well it answers it.
     element : Element
-        What its B-splines are, see `splinesdf.spaces`: quadratic unless given. Others are
+        What its B-splines are, see ``splinesdf.spaces``: quadratic unless given. Others are
         evaluated and saved; outside the domain and on level sets they are not answered for.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> sdf = ss.fit(ss.Shape.from_formula("cos(t)", "sin(t)"), tolerance=0.01).spline
+    >>> points = [[0.5, 0.0], [0.0, 2.0]]
+    >>> sdf(points).round(1).tolist(), sdf.inside(points).tolist()
+    ([-0.5, 1.0], [True, False])
+    >>> values, gradients = sdf.value_and_gradient(points)
+    >>> bool((gradients == sdf.gradient(points)).all())
+    True
+    >>> sdf.normal(points).round(1).tolist(), sdf.closest_point(points).round(1)[0].tolist()
+    ([[1.0, 0.0], [0.0, 1.0]], [1.0, 0.0])
+    >>> sdf.hessian(points).shape, sdf.curvature(points).shape
+    ((2, 2, 2), (2,))
+    >>> len(sdf.contours(0.0)), sdf.grid(5, 4).distance.shape
+    (1, (4, 5))
+    >>> axes = sdf.plot()
+    >>> sdf.save("disk.npz")
+    >>> ss.SplineSDF.from_dict(sdf.to_dict()) == sdf
+    True
     """
 
     mesh: Mesh
@@ -281,23 +302,17 @@ class SplineSDF:
         ------
         InputError
             If the spline is cubic, not finite, or not continuous (fits are).
+
+        Examples
+        --------
+        >>> import splinesdf as ss
+        >>> ss.interpolate(ss.example("gamma1"), (4, 4)).spline.triangles()
+        <Triangles: 64 triangles, 145 nodes>
         """
         return quadratic_triangles(self.mesh, self.element, self.ordinates)
 
-    def to_skfem(self) -> tuple[Any, Floats]:
-        """The spline for scikit-fem: the basis of its `triangles`, and the coefficients in it.
-
-        The basis is of ``ElementTriP2`` on a ``MeshTri``. With ``basis, vector = s.to_skfem()``
-        the values at points (2, n) are ``basis.interpolator(vector)(x)``.
-
-        Raises
-        ------
-        InputError
-            As `triangles`.
-        MissingExtraError
-            Without scikit-fem.
-        """
-        return skfem_basis(self.triangles())
+    to_skfem = to_skfem
+    to_glsl = to_glsl
 
     def to_dict(self) -> dict[str, Any]:
         """All that a saved file holds, as texts, numbers, lists and dicts, for JSON.
@@ -381,15 +396,3 @@ class SplineSDF:
 def _check_outside(outside: str) -> None:
     if outside not in ("extend", "nan"):
         raise InputError(f"expected outside 'extend' or 'nan', got {outside!r:.60}")
-
-
-def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:
-    """The B-spline of cell (i, j) of a grid, -1 and m, n being the ring around the domain.
-
-    It is positive inside an octagon in the 3 x 3 cells around (i, j); all of them sum to one.
-
-    References
-    ----------
-    [Wang2014] Theorem 5 and the 41 values after it.
-    """
-    return SplineSDF(mesh, tensor_ordinates(mesh, bspline_coefficients(mesh, i, j)))

@@ -49,6 +49,13 @@ class Triangles:
         middles of pq, qr and rp, which is VTK's order of a quadratic triangle.
     values : ndarray, shape (n,)
         At the nodes.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> mesh = ss.fit(ss.example("gamma1"), tolerance=0.05).spline.triangles()
+    >>> mesh.triangles.shape[1], len(mesh.points) == len(mesh.values)
+    (6, True)
     """
 
     points: Floats

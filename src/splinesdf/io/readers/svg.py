@@ -119,14 +119,16 @@ def _by_paint(elements: list[Drawn], stroke: str) -> _Drawing:
 
 
 def _fills(elements: list[Drawn], options: Options, found: Found) -> tuple[list[Drawn], list[str]]:
-    """Elements that fill something, their contours once each; which were drawn again."""
+    """Elements that fill something, contours under evenodd once each; which were drawn again."""
     result, repeats = [], []
     for number, drawn in enumerate(elements, 1):
         loops = [loop for loop in drawn.loops if not is_flat(loop)]
         if not loops:
             found.left_out[f"{drawn.tag} without area"] += 1
             continue
-        if options.fill is None:
+        # Under nonzero who draws a contour again sees what that fills; under evenodd a hole, or
+        # all, would be gone.
+        if options.fill is None and drawn.context.rule == "evenodd":
             loops, again = drawn_once(loops)
             repeats += [f"{drawn.tag} {number}: {words}" for words in again]
         result.append(replace(drawn, loops=loops))

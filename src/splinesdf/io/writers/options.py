@@ -36,6 +36,12 @@ class Milling:
         the tool (G41's side), so an outer contour around a part is followed clockwise, a pocket's
         counterclockwise. At a distance above 0, and at 0, the shape is what stays; below 0 it is
         the shape that is cut away.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> ss.Milling(feed=300, depth=2).safe_height
+    5.0
     """
 
     feed: float | None = None

@@ -1,0 +1,79 @@
+"""What `to_glsl` refuses, and its table; tests/web runs what it writes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import splinesdf as ss
+from splinesdf.meshes import Grid
+from splinesdf.splines import shader
+from tests.named_shapes import gamma
+
+UNIT = (0.0, 0.0, 1.0, 1.0)
+
+
+def flat(mesh: Grid, value: float = 1.0) -> ss.SplineSDF:
+    return ss.SplineSDF(mesh, np.full((mesh.cell_count, 8), value))
+
+
+@pytest.mark.parametrize(
+    "name", ["", "2d", "a b", "gl_sdf", "a__b", "distance", "float", "ä", "a" * 41, 3, None, "a;"]
+)
+def test_a_name_that_glsl_refuses(name: object) -> None:
+    spline = flat(Grid.uniform(UNIT, 2, 2))
+    picture = ss.texture(gamma("gamma1"), 8, range=0.5)
+    for owner in (spline, picture):
+        with pytest.raises(ss.InputError, match="expected a name of letters"):
+            owner.to_glsl(name)  # type: ignore[arg-type]
+
+
+def test_numbers_are_in_the_table() -> None:
+    spline = ss.fit(gamma("gamma2"), tolerance=1e-2).spline
+    code, table = spline.to_glsl()
+    cells, nodes = spline.mesh.cell_count, len(spline.mesh.child)  # type: ignore[attr-defined]
+    assert table.shape == (1, 2048, 4)
+    assert table.dtype == np.float32
+    assert np.count_nonzero(table.reshape(-1)[8 * cells + nodes :]) == 0
+    assert f"sdf_texel({2 * cells} + k / 4)" in code
+    assert code.isascii()
+
+
+def test_too_many_cells_for_a_texture(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shader, "_HIGH", 1)  # for one of 2048 x 2048 they take gigabytes
+    flat(Grid.uniform(UNIT, 32, 32)).to_glsl()
+    with pytest.raises(ss.InputError, match="at most 2,048 texels for a shader, got 2,112"):
+        flat(Grid.uniform(UNIT, 32, 33)).to_glsl()
+
+
+@pytest.mark.parametrize("move", [0.0, 998.0])
+def test_near_enough_to_the_origin(move: float) -> None:
+    flat(Grid.uniform((move, 0.0, move + 1.0, 1.0), 2, 2)).to_glsl()
+
+
+def test_places_that_float32_does_not_tell_apart() -> None:
+    square = ss.Shape.from_points([(1e6, 0.0), (1e6 + 1.0, 0.0), (1e6 + 1.0, 1.0), (1e6, 1.0)])
+    with pytest.raises(ss.InputError, match="of its smaller sides of the origin"):
+        ss.texture(square, 8, range=0.5).to_glsl()
+    with pytest.raises(ss.InputError, match="of its smaller sides of the origin"):
+        flat(Grid.uniform((1e6, 0.0, 1e6 + 1.0, 1.0), 2, 2)).to_glsl()
+    lines = np.array([0.0, 1e-9, 1.0]) + 1.0, np.array([0.0, 1.0])
+    with pytest.raises(ss.InputError, match="grid lines x that float32 tells apart"):
+        flat(Grid.from_lines(*lines)).to_glsl()
+    with pytest.raises(ss.InputError, match="float32 can hold"):
+        flat(Grid.uniform(UNIT, 2, 2), 1e39).to_glsl()
+
+
+def test_cubic_splines_have_no_shader() -> None:
+    spline = ss.interpolate(gamma("gamma1"), (4, 4), element="cubic").spline
+    with pytest.raises(ss.InputError, match="expected a quadratic spline"):
+        spline.to_glsl()
+
+
+def test_no_name_of_a_shape_leaves_its_comment() -> None:
+    shape = ss.Shape.from_points([(0, 0), (1, 0), (0, 1)], name="ä\nfloat b; \\")
+    code, _ = ss.fit(shape, tolerance=0.1).spline.to_glsl()
+    first, second = code.splitlines()[:2]
+    assert first.startswith("// ")
+    assert "\\" not in first
+    assert second.startswith("// sdf(p)")
