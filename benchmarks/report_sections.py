@@ -193,7 +193,7 @@ def level_sets(quick: bool) -> Section:
         "Distances again at the nodes of a grid, from samples of a function whose zero set counts: "
         "fast marching (scikit-fmm) and two schemes of a partial differential equation, in NumPy. "
         "Errors are the largest within a tenth of half the domain's side of the zero set. "
-        "scikit-fmm is quicker than we are by two to three orders of magnitude, and less exact by "
+        "scikit-fmm is quicker than we are by about three orders of magnitude, and less exact by "
         "one to two.",
         found,
         error="error / half side", size="zero set moved", missing=missing,
