@@ -179,4 +179,4 @@ def test_white_beside_other_paint_is_noted(tmp_path: Path, inner: str, count: st
         assert not notes
     else:
         (note,) = notes
-        assert f": {count} in white, which" in note
+        assert f": {count}; ids=" in note

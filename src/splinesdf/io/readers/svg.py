@@ -217,8 +217,8 @@ def _notes(drawing: _Drawing, found: Found) -> tuple[str, ...]:
     white = [drawn for drawn in drawing.fills if _is_white(drawn)]
     if 0 < len(white) < len(drawing.fills):
         notes.append(
-            f"filled, as white is a paint: {_counted(white)} in white, which cut no hole and are "
-            "no background: ids=[...] (--id) reads a part of the drawing"
+            f"filled, as white is a paint, no hole and no background: {_counted(white)}; "
+            "ids=[...] (--id) reads a part of the drawing"
         )
     notes += found.mended[:_SHOWN]
     if len(found.mended) > _SHOWN:
