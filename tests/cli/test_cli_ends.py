@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -55,8 +56,8 @@ def test_a_fit_that_is_deleted_meanwhile_is_described(
     ss.fit(gamma("gamma1"), tolerance=0.1).spline.save(tmp_path / "fit.npz")
     load = ss.load
 
-    def deleted(path: str) -> ss.SplineSDF:
-        spline = load(path)
+    def deleted(path: str, **options: Any) -> ss.SplineSDF:
+        spline = load(path, **options)
         (tmp_path / "fit.npz").unlink()
         return spline
 
