@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -55,8 +56,8 @@ def test_a_fit_that_is_deleted_meanwhile_is_described(
     ss.fit(gamma("gamma1"), tolerance=0.1).spline.save(tmp_path / "fit.npz")
     load = ss.load
 
-    def deleted(path: str) -> ss.SplineSDF:
-        spline = load(path)
+    def deleted(path: str, **options: Any) -> ss.SplineSDF:
+        spline = load(path, **options)
         (tmp_path / "fit.npz").unlink()
         return spline
 
@@ -163,3 +164,33 @@ def test_without_its_libraries_the_command_line_names_its_extra(missing: str) ->
     assert done.stderr == (
         'splinesdf: the command line needs: python -m pip install "splinesdf[cli]"\n'
     )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (
+            ("offset", "part", "-d", "-2,2", "-o", "a.dxf"),
+            "expected a number for -d, got '-2,2': for several give -d again for each",
+        ),
+        (
+            ("offset", "part", "-d", "2", "--feed", "9mm", "-o", "a.nc"),
+            "expected a number for --feed, got '9mm'",
+        ),
+        (
+            ("offset", "part", "-d", "-2", "2", "-o", "a.dxf"),
+            "Got unexpected extra argument (2): for a second value give its option again, "
+            "as -d 2 -d 4",
+        ),
+        (
+            ("query", "part", "fit.npz"),
+            "expected a table of points, got a saved fit, 'fit.npz': give the points last",
+        ),
+    ],
+)
+def test_slips_are_told_with_the_way_on(
+    run: Command, tmp_path: Path, arguments: tuple[str, ...], said: str
+) -> None:
+    (tmp_path / "fit.npz").write_bytes(b"PK")
+    done = run(*arguments)
+    assert (done.status, done.out, done.err) == (2, "", f"splinesdf: {said}\n")

@@ -312,3 +312,14 @@ def test_options_of_another_kind_are_refused(
     (tmp_path / "a.svg").write_text("<svg><circle r='1'/></svg>")
     with pytest.raises(ss.InputError, match=re.escape(expected)):
         ss.read(tmp_path / "a.svg", **options)  # type: ignore[arg-type]
+
+
+def test_a_saved_fit_is_no_drawing_and_no_contour(tmp_path: Path) -> None:
+    (tmp_path / "fit.npz").write_bytes(b"PK")
+    with pytest.raises(
+        ss.InputError, match=r"got '\.npz'; a saved fit is read by splinesdf\.load$"
+    ):
+        ss.read(tmp_path / "fit.npz")
+    with pytest.raises(ss.InputError, match=r"out\.npz'; a fit is saved by its spline\.save$"):
+        ss.write(tmp_path / "out.npz", ss.Shape.circle((0, 0), 1))
+    assert not (tmp_path / "out.npz").exists()

@@ -159,3 +159,24 @@ def test_boxes_are_as_the_specification_says(
 )  # fmt: skip
 def test_what_is_passed_over_is_named(tmp_path: Path, inner: str, expected: str) -> None:
     assert expected in " ".join(_read(tmp_path, inner).notes)
+
+
+@pytest.mark.parametrize(
+    ("inner", "count"),
+    [
+        (f"{DISC}<rect width='50' height='50' fill='#FFF'/>", "1 rect"),
+        (f"<rect width='50' height='50' style='fill: rgb(255, 255, 255)'/>{DISC}", "1 rect"),
+        (f"<g fill='white'>{SMALL}{DISC}</g>{STAR}", "1 rect, 1 circle"),
+        (f"<g fill='white'>{SMALL}{DISC}</g>", None),  # nothing else: white is the drawing
+        (f"{SMALL}{DISC}", None),
+        (f"{SMALL}<circle cx='80' cy='80' r='9' fill='#fffffe'/>", None),
+    ],
+)
+def test_white_beside_other_paint_is_noted(tmp_path: Path, inner: str, count: str | None) -> None:
+    (tmp_path / "a.svg").write_text(f"{HEAD}{inner}</svg>")
+    notes = [note for note in ss.read(tmp_path / "a.svg").notes if "white is a paint" in note]
+    if count is None:
+        assert not notes
+    else:
+        (note,) = notes
+        assert f": {count}; ids=" in note

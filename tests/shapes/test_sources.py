@@ -128,3 +128,10 @@ def test_long_contours_that_differ_in_a_corner_are_two() -> None:
     shape = ss.Shape.from_points([one, other[::-1]])
     assert shape.loop_count == 2
     assert shape.notes == ()
+
+
+def test_one_contour_is_no_list_of_contours() -> None:
+    (contour,) = ss.offset(ss.Shape.circle((0, 0), 1), 1)
+    with pytest.raises(ss.InputError, match=r"list of contours, got Contour: give \[contour\]$"):
+        ss.Shape.from_contours(contour)  # type: ignore[arg-type]
+    assert ss.Shape.from_contours([contour]).box == pytest.approx((-2, -2, 2, 2))

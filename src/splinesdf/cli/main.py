@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 
 import splinesdf as ss
@@ -43,7 +44,7 @@ def main() -> None:
         click.echo(error.format_message(), err=True)
         sys.exit(2)
     except click.ClickException as error:
-        _fail(error.format_message())
+        _fail(_in_words(error))
     except ss.SplineSDFError as error:
         _fail(str(error))
     except BrokenPipeError:
@@ -54,6 +55,23 @@ def main() -> None:
     except MemoryError:
         _fail("not enough memory: raise the tolerance, or ask for a band")
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _in_words(error: click.ClickException) -> str:
+    """What click says, with the way to give several values, which it does not name.
+
+    Its "2mm is not a valid float" becomes what was expected and what came.
+    """
+    message = error.format_message()
+    if isinstance(error, click.BadParameter) and error.param is not None:
+        got = re.match(r"('.*') is not a valid (?:float|integer)", error.message, re.DOTALL)
+        if got:
+            name = error.param.opts[0]
+            again = f": for several give {name} again for each" if error.param.multiple else ""
+            return f"expected a number for {name}, got {got[1]}{again}"
+    if message.startswith("Got unexpected extra argument"):
+        return f"{message}: for a second value give its option again, as -d 2 -d 4"
+    return message
 
 
 def _fail(message: str) -> None:

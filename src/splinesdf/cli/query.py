@@ -19,6 +19,7 @@ from splinesdf.cli.shapes import (
     reading_options,
 )
 from splinesdf.distance.exact import distance_and_gradient
+from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.atomic import write_text
 from splinesdf.io.input import read_points
@@ -36,6 +37,10 @@ def query(source: str, points: str, output: str | None, reading: dict[str, Any])
     From a saved fit (.npz, .json), or exact from a shape. Not a number: a point that is not one; a
     shape's gradient on the boundary itself.
     """
+    if holds_fit(points):
+        raise InputError(
+            f"expected a table of points, got a saved fit, {points!r}: give the points last"
+        )
     if holds_fit(source):
         spline = load_fit(source, reading)
         ask: Callable[[Any], Any] = spline.value_and_gradient

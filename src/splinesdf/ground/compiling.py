@@ -7,7 +7,7 @@ import time
 
 from numba.core import event
 
-_NOTE = "splinesdf: compiling, once on this machine; this may take a minute"
+_NOTE = "splinesdf: compiling what this work needs, and keeping it; this may take a minute"
 
 
 class _Watch(event.Listener):

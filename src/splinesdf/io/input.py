@@ -198,6 +198,8 @@ def _parts(path: str | os.PathLike[str], options: ReadOptions) -> Iterator[Readi
         suffix = file.suffix.lower()
         if suffix not in READERS:
             kept = f"; or splinesdf.example({file.name!r})" if file.name in EXAMPLES else ""
+            if suffix == ".npz":
+                kept = "; a saved fit is read by splinesdf.load"
             raise InputError(
                 f"expected a file ending in {', '.join(sorted(READERS))}, got "
                 f"{suffix or 'none'!r}{kept}"

@@ -223,8 +223,10 @@ def check_format(
             f"a file name ending in {', '.join(sorted(WRITERS))}"
         )
     if suffix not in WRITERS:
+        kept = "; a fit is saved by its spline.save" if suffix == ".npz" else ""
         raise InputError(
-            f"expected a file name ending in {', '.join(sorted(WRITERS))}, got {os.fspath(path)!r}"
+            f"expected a file name ending in {', '.join(sorted(WRITERS))}, got "
+            f"{os.fspath(path)!r}{kept}"
         )
     check_options(suffix, arcs=arcs, units=units, milling=milling)
     return suffix, Placement(scale, origin, flip)

@@ -182,6 +182,10 @@ def from_contours(cls: type[Shape], contours: Iterable[Contour], *, name: str = 
     >>> round(ss.Shape.from_contours(ring).box[0], 9)
     -1.0
     """
+    if not isinstance(contours, Iterable):
+        raise InputError(
+            f"expected a list of contours, got {type(contours).__name__}: give [contour]"
+        )
     given = list(contours)
     y_down = any(getattr(contour, "y_down", False) for contour in given)
     loops, unit = contour_loops(given), getattr(given[0], "unit", None)

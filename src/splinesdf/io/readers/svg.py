@@ -29,6 +29,8 @@ from splinesdf.io.readers.svg_walk import Document, Found
 from splinesdf.shapes.region import Loops
 from splinesdf.shapes.repeats import drawn_once, first_of_each, repeats_note
 
+# How white is written. One that lacks here is filled all the same, without a note.
+_WHITE = frozenset({"white", "#fff", "#ffffff", "rgb(255,255,255)", "rgb(100%,100%,100%)"})
 # Errors that notes show; of the others they say how many there are.
 _SHOWN = 3
 
@@ -212,6 +214,12 @@ def _notes(drawing: _Drawing, found: Found) -> tuple[str, ...]:
             f"left out: the strokes of {_counted(drawing.strokes)}, which fill nothing: "
             "stroke='outline' (--stroke outline) reads what they cover, 'centre' closed lines"
         )
+    white = [drawn for drawn in drawing.fills if _is_white(drawn)]
+    if 0 < len(white) < len(drawing.fills):
+        notes.append(
+            f"filled, as white is a paint, no hole and no background: {_counted(white)}; "
+            "ids=[...] (--id) reads a part of the drawing"
+        )
     notes += found.mended[:_SHOWN]
     if len(found.mended) > _SHOWN:
         notes.append(f"and {len(found.mended) - _SHOWN} more elements with errors")
@@ -235,6 +243,10 @@ def _nothing(drawing: _Drawing, notes: Sequence[str]) -> str:
         "expected a path, rect, circle, ellipse, polygon or polyline that encloses something, "
         f"got none{more[:300]}"
     )
+
+
+def _is_white(drawn: Drawn) -> bool:
+    return "".join(drawn.context.paint("fill", "black").lower().split()) in _WHITE
 
 
 def _counted(elements: Sequence[Drawn]) -> str:
