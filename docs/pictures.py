@@ -93,6 +93,24 @@ def explorer() -> None:
     write_page(DOCS / "explorer" / "bracket.html", spline, distances=[-2, 2])
 
 
+def explored() -> None:
+    """The explorer's page in a browser: Debian's chromium, through Playwright."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as play:
+        browser = play.chromium.launch(
+            executable_path=shutil.which("chromium"), args=["--no-sandbox"]
+        )
+        tab = browser.new_page(viewport={"width": 900, "height": 560})
+        tab.goto((DOCS / "explorer" / "bracket.html").as_uri())
+        tab.wait_for_timeout(2000)
+        tab.screenshot(path="explorer.png")
+        browser.close()
+    with Image.open("explorer.png") as image:
+        few = image.convert("RGB").quantize(96, dither=Image.Dither.NONE)
+        few.save(PICTURES / "explorer.png", optimize=True)
+
+
 def gcode() -> None:
     names = names_of("gcode")
     part, path, machined = names["part"], names["path"], names["machined"]
@@ -235,7 +253,7 @@ def textures() -> None:
 
 
 MADE: tuple[Callable[[], None], ...] = (
-    *(part, explorer, gcode, pocket, check_offset),
+    *(part, explorer, explored, gcode, pocket, check_offset),
     *(reinitialise, flow_solver, unfitted_fem, textures),
 )
 
