@@ -55,6 +55,14 @@ def test_of_a_shape() -> None:
     np.testing.assert_allclose(again, made.ordinates, rtol=0, atol=1e-12)
 
 
+def test_sides_of_many_sizes() -> None:
+    mesh = Grid.from_lines(np.geomspace(1e-6, 1.0, 60), np.geomspace(1.0, 1e6, 50))
+    drawn = np.random.default_rng(7).normal(size=(61, 51))
+    made = SplineSDF(mesh, tensor_ordinates(mesh, drawn))
+    again = tensor_ordinates(mesh, made.coefficients())
+    np.testing.assert_allclose(again, made.ordinates, rtol=0, atol=1e-12)
+
+
 def test_refused() -> None:
     disk = ss.Shape.circle((0, 0), 1)
     tree = ss.fit(disk, tolerance=0.05).spline

@@ -38,7 +38,8 @@ def coefficients(spline: SplineSDF) -> Floats:
     Raises
     ------
     InputError
-        If the spline is on a quadtree, of another element, or none of B-splines.
+        If the spline is on a quadtree, of another element, or none of B-splines; or if rounding
+        hides them: sides that shrink from large to tiny (by 1e6) and grow again.
 
     Examples
     --------
@@ -78,10 +79,11 @@ def _found(mesh: Grid, ordinates: Floats) -> Floats:
     x_steps, y_steps = 1.0 / h[:-1] + 1.0 / h[1:], 1.0 / k[:-1] + 1.0 / k[1:]
     along_x = -signs[:-1, 1:-1] * x_sides * x_steps[:, None] / k[1:-1]
     along_y = -signs[1:-1, :-1] * y_sides * y_steps / h[1:-1, None]
+    # From the largest cell: d grows toward small ones, and so does the rounding of its steps.
+    i, j = int(np.argmax(h[1:-1])), int(np.argmax(k[1:-1]))
     d = np.zeros((m + 2, n + 2))
-    d[2:-1, 1] = np.cumsum(along_x[1:-1, 0])
-    d[1:-1, 2:] = d[1:-1, 1:2] + np.cumsum(along_y[:, 1:], axis=1)
-    d[1:-1, 0] = d[1:-1, 1] - along_y[:, 0]
+    d[1:-1, 1:-1] = _summed(along_x[1:-1, j : j + 1], i) + _summed(along_y[:, 1:-1].T, j).T
+    d[1:-1, 0], d[1:-1, -1] = d[1:-1, 1] - along_y[:, 0], d[1:-1, -2] + along_y[:, -1]
     d[0, 1:-1], d[-1, 1:-1] = d[1, 1:-1] - along_x[0], d[-2, 1:-1] + along_x[-1]
     # The ring's corners are only in the ordinates at the domain's corners, which are the mean of
     # the side at the corner and the one beyond it.
@@ -93,3 +95,10 @@ def _found(mesh: Grid, ordinates: Floats) -> Floats:
     null = signs * np.multiply.outer(h, k)
     result = null * d
     return np.asarray(result - null * (np.sum(null * result) / np.sum(null * null)))
+
+
+def _summed(steps: Floats, start: int) -> Floats:
+    """What is zero at row ``start`` and has these differences, (n - 1, k) to (n, k)."""
+    after = np.cumsum(steps[start:], axis=0)
+    before = -np.cumsum(steps[:start][::-1], axis=0)[::-1]
+    return np.concatenate([before, np.zeros((1, steps.shape[1])), after])
