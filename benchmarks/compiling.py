@@ -11,15 +11,50 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
 import time
 from collections import defaultdict
+from dataclasses import dataclass
 
 import numpy as np
 
 OPERATIONS = ("distance", "offset", "fit")
+
+
+@dataclass(frozen=True)
+class FirstUse:
+    """What one process took: CPU seconds, of compiling by kernel, and how often each."""
+
+    process: float  # the whole of it, Python's start included
+    total: float
+    own: dict[str, float]
+    times: dict[str, int]
+
+    @property
+    def compiling(self) -> float:
+        return sum(self.own.values())
+
+
+def first_use(operation: str, folder: str) -> FirstUse:
+    """Carry one operation out in a process of its own; compiled code is kept in the folder."""
+    command = [sys.executable, "-m", "benchmarks.compiling", operation, "--run"]
+    printed, process = child(command, {"NUMBA_CACHE_DIR": folder})
+    found = json.loads(printed)
+    return FirstUse(process, found["total"], found["own"], found["times"])
+
+
+def child(command: list[str], settings: dict[str, str]) -> tuple[str, float]:
+    """What a process prints, and its CPU seconds."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(
+        command, env=os.environ | settings, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+        text=True, check=True,
+    )  # fmt: skip
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return done.stdout, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def _run(operation: str) -> None:
@@ -47,9 +82,8 @@ def _run(operation: str) -> None:
 
     event.register("numba:compile", Listener())
     import splinesdf as ss
-    from benchmarks.digest_shapes import PART
 
-    shape = ss.read(PART)
+    shape = ss.example("part")
     if operation == "distance":
         ss.signed_distance(shape, np.random.default_rng(0).random((1000, 2)) * shape.size)
     elif operation == "offset":
@@ -71,19 +105,11 @@ def main() -> None:
         return
     for operation in arguments.operations:
         with tempfile.TemporaryDirectory() as folder:
-            command = [sys.executable, "-m", "benchmarks.compiling", operation, "--run"]
-            answer = subprocess.run(
-                command, env=os.environ | {"NUMBA_CACHE_DIR": folder}, stdout=subprocess.PIPE,
-                text=True, check=True,
-            )  # fmt: skip
-        found = json.loads(answer.stdout)
-        kernels = sum(found["times"].values())
-        twice = {name: count for name, count in found["times"].items() if count > 1}
-        print(f"{operation}: {found['total']:.1f} s of CPU time, of which compiling "
-              f"{sum(found['own'].values()):.1f} s for {kernels} signatures")  # fmt: skip
-        for name, seconds in sorted(found["own"].items(), key=lambda item: -item[1])[
-            : arguments.most
-        ]:
+            found = first_use(operation, folder)
+        twice = {name: count for name, count in found.times.items() if count > 1}
+        print(f"{operation}: {found.total:.1f} s of CPU time, of which compiling "
+              f"{found.compiling:.1f} s for {sum(found.times.values())} signatures")  # fmt: skip
+        for name, seconds in sorted(found.own.items(), key=lambda item: -item[1])[: arguments.most]:
             print(f"  {seconds:6.2f}  {name}")
         if twice:
             print("  more than one signature:", ", ".join(f"{k} {n}" for k, n in twice.items()))

@@ -30,6 +30,7 @@ class Question:
     points: np.ndarray
     grid: tuple[int, int] | None  # nodes along x and y, if the points are a grid's
     domain: tuple[float, float, float, float]
+    lines: list[np.ndarray]  # the shape's loops as closed polylines: making them is nobody's time
 
 
 def limacon(t: np.ndarray, *, derivative: bool = False) -> np.ndarray:
@@ -55,39 +56,62 @@ def rings(shape: ss.Shape, deviation: float) -> list[np.ndarray]:
     return result
 
 
-def side_test(shape: ss.Shape) -> Answer:
+def side_test(asked: Question) -> Answer:
     """-1 inside and 1 outside, by GEOS; for shapes whose loops do not cross."""
     import shapely
 
     region = reduce(
         lambda one, other: one.symmetric_difference(other),
-        (shapely.Polygon(ring) for ring in rings(shape, DEVIATION * shape.size)),
+        (shapely.Polygon(ring) for ring in asked.lines),
     )
     shapely.prepare(region)
     return lambda points: np.where(shapely.contains_xy(region, points), -1.0, 1.0)
 
 
-def gpytoolbox_aabb(asked: Question) -> Answer:
-    from gpytoolbox import squared_distance_precompute
-
-    lines = rings(asked.shape, DEVIATION * asked.shape.size)
+def sides_of(lines: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """The polylines' corners (n, 2), and the indices (n, 2) of the ends of their sides."""
     corners = np.concatenate([line[:-1] for line in lines])
     starts = np.cumsum([0] + [len(line) - 1 for line in lines])
     ends = np.arange(1, len(corners) + 1)
     ends[starts[1:] - 1] = starts[:-1]
-    tree = squared_distance_precompute(corners, np.stack([np.arange(len(corners)), ends], -1))
-    side = side_test(asked.shape)
+    return corners, np.stack([np.arange(len(corners)), ends], -1)
+
+
+def gpytoolbox_aabb(asked: Question) -> Answer:
+    from gpytoolbox import squared_distance_precompute
+
+    tree = squared_distance_precompute(*sides_of(asked.lines))
+    side = side_test(asked)
     return lambda points: np.sqrt(tree.squared_distance(points)[0]) * side(points)
+
+
+def fcpw_bvh(asked: Question) -> Answer:
+    """In single precision, as it is made; distances come one by one from its list."""
+    import fcpw
+
+    corners, ends = sides_of(asked.lines)
+    scene = fcpw.scene_2D()
+    scene.set_object_count(1)
+    scene.set_object_vertices(np.asfortranarray(corners, dtype=np.float32), 0)
+    scene.set_object_line_segments(np.asfortranarray(ends, dtype=np.int32), 0)
+    scene.build(fcpw.aggregate_type.bvh_surface_area, True)
+    side = side_test(asked)
+
+    def answer(points: np.ndarray) -> np.ndarray:
+        found = fcpw.interaction_2D_list()
+        reach = np.full(len(points), np.inf, dtype=np.float32)
+        scene.find_closest_points(np.asfortranarray(points, dtype=np.float32), reach, found)
+        return np.array([one.d for one in found]) * side(points)
+
+    return answer
 
 
 def shapely_ring(asked: Question) -> Answer:
     import shapely
 
-    lines = shapely.multilinestrings(
-        [shapely.linestrings(line) for line in rings(asked.shape, DEVIATION * asked.shape.size)]
-    )
+    lines = shapely.multilinestrings([shapely.linestrings(line) for line in asked.lines])
     shapely.prepare(lines)
-    side = side_test(asked.shape)
+    side = side_test(asked)
     return lambda points: shapely.distance(lines, shapely.points(points)) * side(points)
 
 
@@ -97,10 +121,10 @@ def shapely_tree(asked: Question) -> Answer:
 
     runs = [
         shapely.linestrings(line[first : first + 9])
-        for line in rings(asked.shape, DEVIATION * asked.shape.size)
+        for line in asked.lines
         for first in range(0, len(line) - 1, 8)
     ]
-    tree, side = shapely.STRtree(runs), side_test(asked.shape)
+    tree, side = shapely.STRtree(runs), side_test(asked)
 
     def answer(points: np.ndarray) -> np.ndarray:
         _, distance = tree.query_nearest(
@@ -118,7 +142,7 @@ def kd_tree(asked: Question) -> Answer:
     t = np.arange(each) / each
     pieces = [asked.shape.piece(i) for i in range(asked.shape.piece_count)]
     tree = cKDTree(np.concatenate([evaluate_bezier(control, t) for control in pieces]))
-    side = side_test(asked.shape)
+    side = side_test(asked)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else -1
     return lambda points: tree.query(points, workers=cores)[0] * side(points)
 
@@ -129,7 +153,7 @@ def fast_marching(asked: Question) -> Answer | None:
 
     if asked.grid is None:
         return None
-    level = limacon_level if asked.shape.name.startswith("limaçon") else side_test(asked.shape)
+    level = limacon_level if asked.shape.name.startswith("limaçon") else side_test(asked)
     shape, spacing = _rows(asked)
     return lambda points: np.asarray(skfmm.distance(level(points).reshape(shape), spacing)).ravel()
 
@@ -147,7 +171,7 @@ def distance_transform(asked: Question) -> Answer | None:
 
     if asked.grid is None:
         return None
-    side, (shape, spacing) = side_test(asked.shape), _rows(asked)
+    side, (shape, spacing) = side_test(asked), _rows(asked)
 
     def answer(points: np.ndarray) -> np.ndarray:
         outside = side(points).reshape(shape) > 0
@@ -169,9 +193,10 @@ def _rows(asked: Question) -> tuple[tuple[int, int], Any]:
 # What gets a peer ready, and how many points apart the ones are that it is given: some are slow.
 PEERS: dict[str, tuple[Callable[[Question], Answer | None], int]] = {
     "gpytoolbox AABB": (gpytoolbox_aabb, 5),
+    "FCPW": (fcpw_bvh, 5),
     "shapely ring": (shapely_ring, 331),
     "shapely STRtree": (shapely_tree, 19),
-    "kd-tree of 1e5": (kd_tree, 19),
+    "kd-tree of 1e5": (kd_tree, 97),
     "scikit-fmm": (fast_marching, 1),
     "scipy edt": (distance_transform, 1),
 }

@@ -1,13 +1,14 @@
 """Speed of the exact signed distance beside that of other libraries, and how it grows.
 
-Run from the repository's root; peers that are not installed are left out:
+Run from the repository's root; peers that are not installed are named and left out:
 
-    pip install gpytoolbox scikit-fmm shapely scipy matplotlib fonttools
+    python -m pip install -e ".[bench]"
     python -m benchmarks.distance_speed [--points 1000000] [--rounds 3] [--cores 1 2]
 
 For each number of cores one process is bound to so many. In it every contestant answers once a
 round, one after the other, and the median of its rounds is shown: what else the machine does hits
-all alike. Making trees and polylines is timed apart ("ready"). Slow peers are given fewer points.
+all alike. On one core seconds are those of the CPU, on more those of the clock. Making trees is
+timed apart ("ready"). Slow peers are given fewer points.
 Peers that know polylines only get one within 1e-6 of the shape's size; errors are shares of the
 size, against ``ss.signed_distance``. Grids are those of the same domain and the same nodes.
 """
@@ -26,7 +27,8 @@ from statistics import median
 import numpy as np
 
 import splinesdf as ss
-from benchmarks.distance_peers import PEERS, Answer, Question, limacon
+from benchmarks.distance_peers import DEVIATION, PEERS, Answer, Question, limacon, rings
+from benchmarks.tables import OURS, Entry, clock
 
 MARGIN = 0.1
 
@@ -39,6 +41,7 @@ class Contestant:
     ready: float  # seconds to get ready
     seconds: list[float] = field(default_factory=list)
     miss: float = 0.0
+    count: int = 0  # of the points that it was given
 
 
 def limacon_cubics(count: int) -> ss.Shape:
@@ -72,13 +75,14 @@ def question(shape: ss.Shape, count: int, grid: bool) -> Question:
     xmin, ymin, xmax, ymax = shape.box
     grown = MARGIN * shape.size
     domain = (xmin - grown, ymin - grown, xmax + grown, ymax + grown)
+    lines = rings(shape, DEVIATION * shape.size)
     if not grid:
         rng = np.random.default_rng(1)
-        return Question(shape, rng.uniform(domain[:2], domain[2:], (count, 2)), None, domain)
+        return Question(shape, rng.uniform(domain[:2], domain[2:], (count, 2)), None, domain, lines)
     side = round(count**0.5)
     x, y = np.linspace(*domain[::2], side), np.linspace(*domain[1::2], side)
     nodes = np.stack(np.meshgrid(x, y), -1).reshape(-1, 2)
-    return Question(shape, nodes, (side, side), domain)
+    return Question(shape, nodes, (side, side), domain, lines)
 
 
 def ours(asked: Question) -> Answer:
@@ -90,45 +94,100 @@ def ours(asked: Question) -> Answer:
     return lambda _: ss.signed_distance_grid(shape, nx, ny, domain=domain).distance.ravel()
 
 
-def contestants(asked: Question) -> list[Contestant]:
-    """Ourselves first, then every peer that is installed and has an answer."""
-    result = []
+def contestants(asked: Question) -> tuple[list[Contestant], dict[str, str]]:
+    """Ourselves first, then every peer that has an answer; and why others are not installed."""
+    result, missing = [], {}
     everyone: dict[str, tuple[Callable[[Question], Answer | None], int]] = {
-        "splinesdf": (ours, 1),
+        OURS: (ours, 1),
         **PEERS,
     }
     for name, (prepare, step) in everyone.items():
-        began = time.perf_counter()
+        began = clock()
         try:
             answer = prepare(asked)
-        except ImportError as missing:
-            print(f"    {name}: left out, {missing.name} is not installed")
+        except (ImportError, OSError) as error:
+            missing[name] = str(error)
             continue
         if answer is not None:
-            result.append(Contestant(name, answer, step, time.perf_counter() - began))
-    return result
+            result.append(Contestant(name, answer, step, clock() - began))
+    return result, missing
 
 
-def compare(shape: ss.Shape, count: int, rounds: int, grid: bool) -> None:
+def answered(shape: ss.Shape, count: int, rounds: int, grid: bool) -> list[Contestant]:
+    """Everyone before the same points, by turns."""
     asked = question(shape, count, grid)
-    print(f"\n{shape.name}: {'grid' if grid else 'random points'}", flush=True)
-    print("                       points   ready, s   M points/s  of ours  max error")
-    field_ = contestants(asked)
+    field_, _ = contestants(asked)
     expected = ss.signed_distance(shape, asked.points)
     for _ in range(rounds):
         for one in field_:
             points = np.ascontiguousarray(asked.points[:: one.step])
-            began = time.perf_counter()
+            began = clock()
             found = one.answer(points)
-            one.seconds.append((time.perf_counter() - began) / len(points))
+            one.seconds.append((clock() - began) / len(points))
             one.miss = float(np.max(np.abs(found - expected[:: one.step]))) / shape.size
+            one.count = len(points)
+    return field_
+
+
+def entries(shape: ss.Shape, count: int, rounds: int, grid: bool) -> list[Entry]:
+    """Seconds a point and largest errors, those of peers against ours, for the report."""
+    title = f"{shape.name}: {'grid' if grid else 'random points'}"
+    return [
+        Entry(
+            title,
+            one.name,
+            median(one.seconds),
+            None if one.name == OURS else one.miss,
+            f"{1e3 * one.ready:,.3g}" if one.ready < 1.0 else f"{1e3 * one.ready:,.0f}",
+        )
+        for one in answered(shape, count, rounds, grid)
+    ]
+
+
+def small_entries(rounds: int) -> list[Entry]:
+    """One question of a tiny shape, and nothing to share the preparation with, for the report."""
+    corners = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
+    point = np.array([[0.5, 0.4]])
+
+    def by_shapely() -> object:
+        import shapely
+
+        return shapely.distance(shapely.Polygon(corners).exterior, shapely.points(point))
+
+    def by_gpytoolbox() -> object:
+        from gpytoolbox import squared_distance
+
+        ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+        return squared_distance(point, corners, ends)
+
+    everyone = {
+        OURS: lambda: ss.signed_distance(ss.Shape.from_points(corners), point),
+        "shapely ring": by_shapely,
+        "gpytoolbox AABB": by_gpytoolbox,
+    }
+    seconds: dict[str, list[float]] = {}
+    for _ in range(20 * rounds + 1):
+        for name, run in everyone.items():
+            began = clock()
+            try:
+                run()
+            except ImportError:
+                continue
+            seconds.setdefault(name, []).append(clock() - began)
+    title = "one point of a rectangle that was just made"
+    return [Entry(title, name, median(times[1:])) for name, times in seconds.items()]
+
+
+def compare(shape: ss.Shape, count: int, rounds: int, grid: bool) -> None:
+    print(f"\n{shape.name}: {'grid' if grid else 'random points'}", flush=True)
+    print("                       points   ready, s   M points/s  of ours  max error")
+    field_ = answered(shape, count, rounds, grid)
     for one in field_:
         speed = 1e-6 / median(one.seconds)
-        ratio = median(field_[0].seconds) / median(one.seconds)
-        number = len(asked.points[:: one.step])
+        share = median(field_[0].seconds) / median(one.seconds)
         print(
-            f"    {one.name:16} {number:8} {one.ready:10.3f} {speed:12.4f} "
-            f"{ratio:8.4f} {one.miss:10.1e}",
+            f"    {one.name:16} {one.count:8} {one.ready:10.3f} {speed:12.4f} "
+            f"{share:8.4f} {one.miss:10.1e}",
             flush=True,
         )
 
@@ -172,13 +231,22 @@ def bound(cores: int) -> bool:
     return True
 
 
+def warm_up() -> dict[str, str]:
+    """Compile and import what everyone needs; give those that are not installed, and why."""
+    missing: dict[str, str] = {}
+    for grid in (False, True):
+        asked = question(limacon_cubics(8), 10_000, grid)
+        field_, absent = contestants(asked)
+        missing |= absent
+        for one in field_:
+            one.answer(asked.points)
+    return missing
+
+
 def run(options: argparse.Namespace) -> None:
     """Everything, on the cores this process has."""
-    warm = limacon_cubics(8)
-    for grid in (False, True):
-        asked = question(warm, 10_000, grid)
-        for one in contestants(asked):  # compiles and imports
-            one.answer(asked.points)
+    for name, why in warm_up().items():
+        print(f"    {name}: left out, {why}")
     shapes = [limacon_cubics(32), glyph(), limacon_polygon(1383), limacon_polygon(100_000)]
     for shape in shapes:
         if shape is not None:

@@ -1,6 +1,6 @@
 """Values and gradients of a spline beside SciPy's, at equal true error and at equal memory.
 
-    python benchmarks/evaluation.py
+    python -m benchmarks.evaluation
 
 The function is the signed distance of the paper's limaçon on the unit square. Ours are a uniform
 grid (quasi-interpolant W) and an adaptive fit of a band; the peers interpolate distances at the
@@ -12,8 +12,8 @@ nodes of a grid. The true error is the largest |s - u| at 400,000 random points 
     equal memory   as many bytes of what evaluation reads: coefficients, and the fit's tree
 
 All are asked in one run, by turns, on one core, at the same points in row order and shuffled; a
-figure is the median of the rounds. What has no gradient is asked for the value only. Last, one
-spline of 1024² cells, which no cache holds: shuffled points beside ordered ones.
+figure is the median of the rounds, of CPU time. What has no gradient is asked for the value only.
+Last, one spline of 1024² cells, which no cache holds: shuffled points beside ordered ones.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from scipy.interpolate import NdBSpline, RectBivariateSpline, interpn
 from scipy.ndimage import map_coordinates, spline_filter
 
 import splinesdf as ss
+from benchmarks.tables import OURS, Entry, clock
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.paper import tables as paper
 from splinesdf.splines.quasi import quasi_interpolate
@@ -38,6 +39,7 @@ from tests.trees import hierarchical_ordinates
 
 CELLS, SIDE, ROUNDS = 128, 700, 7
 NEAR = 0.05
+LOOKS = 400_000  # random points at which a true error is looked for
 # What a spline filter's border does wrong shrinks by 0.27 (0.17 for order 2) a node: to 1e-7 here.
 PADDING = 12
 SHAPE = paper.shape("gamma2")
@@ -55,15 +57,25 @@ class Method:
     both: Callable[[Points], object] | None
 
 
+@dataclass(frozen=True)
+class Row:
+    """What a method took, in seconds a point: ordered and shuffled, None if it has no gradient."""
+
+    method: Method
+    error: float
+    value: tuple[float, float]
+    both: tuple[float, float] | None
+
+
 def distance(points: Points) -> np.ndarray:
     return ss.signed_distance(SHAPE, points)
 
 
 @cache
 def near() -> tuple[Points, np.ndarray]:
-    points = np.random.default_rng(0).uniform(0.0, 1.0, (4_000_000, 2))
+    points = np.random.default_rng(0).uniform(0.0, 1.0, (10 * LOOKS, 2))
     exact = ss.signed_distance(SHAPE, points, max_distance=2.0 * NEAR)
-    chosen = np.flatnonzero(np.abs(exact) <= NEAR)[:400_000]
+    chosen = np.flatnonzero(np.abs(exact) <= NEAR)[:LOOKS]
     return points[chosen], exact[chosen]
 
 
@@ -79,7 +91,8 @@ def nodes(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 def ours(name: str, spline: SplineSDF) -> Method:
     spline(np.zeros((1, 2)))  # makes its tables
-    tables = [spline._powers, *(spline._ways if isinstance(spline.mesh, Quadtree) else ())]
+    ways = spline._space._ways if isinstance(spline.mesh, Quadtree) else ()
+    tables = [spline._table, *ways]
     size = f"{len(spline.ordinates):,} cells"
     return Method(
         name, size, sum(t.nbytes for t in tables), spline, lambda p: spline.value_and_gradient(p)
@@ -179,20 +192,23 @@ def largest_within(memory: int) -> Method:
     return found
 
 
-def by_turns(runs: dict[str, Callable[[], object]]) -> dict[str, float]:
+def by_turns(
+    runs: dict[str, Callable[[], object]], read: Callable[[], float] = clock
+) -> dict[str, float]:
     """Median seconds of each."""
     for run in runs.values():
         run()  # compiles, warms up
     seconds: dict[str, list[float]] = {name: [] for name in runs}
     for _ in range(ROUNDS):
         for name, run in runs.items():
-            began = time.perf_counter()
+            began = read()
             run()
-            seconds[name].append(time.perf_counter() - began)
+            seconds[name].append(read() - began)
     return {name: statistics.median(times) for name, times in seconds.items()}
 
 
-def table(title: str, methods: list[Method], points: Points) -> None:
+def timed(methods: list[Method], points: Points) -> list[Row]:
+    """All at the same points, by turns."""
     shuffled = np.random.default_rng(1).permutation(points)
     runs: dict[str, Callable[[], object]] = {}
     for method in methods:
@@ -202,19 +218,46 @@ def table(title: str, methods: list[Method], points: Points) -> None:
             if method.both is not None:
                 runs[f"{method.name} both {order}"] = lambda f=method.both, p=asked: f(p)
     seconds = by_turns(runs)
+
+    def each(method: Method, what: str) -> tuple[float, float]:
+        one, two = (seconds[f"{method.name} {what} {o}"] for o in ("ordered", "shuffled"))
+        return one / len(points), two / len(points)
+
+    return [
+        Row(m, true_error(m), each(m, "value"), None if m.both is None else each(m, "both"))
+        for m in methods
+    ]
+
+
+def entries(title: str, rows: list[Row]) -> list[Entry]:
+    """Seconds a point, ordered, beside our uniform grid, for the report."""
+    result = []
+    for what in ("value", "value and gradient"):
+        for row in rows:
+            spent = row.value if what == "value" else row.both
+            if spent is None:
+                continue
+            method = row.method
+            size = f"{method.size}, {method.bytes:,} bytes"
+            name = OURS if method is rows[0].method else method.name
+            result.append(Entry(f"{title}: {what}", name, spent[0], row.error, size))
+    return result
+
+
+def table(title: str, methods: list[Method], points: Points) -> None:
+    rows = timed(methods, points)
     print(f"\n{title}; ns a point, ordered / shuffled; x: times the first line's, ordered")
     print(f"{'':26}{'':>15}{'bytes':>11}{'true error':>12}{'value':>16}{'value+gradient':>23}")
-    first = methods[0]
-    for m in methods:
-        print(f"{m.name:26}{m.size:>15}{m.bytes:>11,}{true_error(m):>12.2e}", end="")
-        for what in ("value", "both"):
-            if what == "both" and m.both is None:
+    first = rows[0]
+    for row in rows:
+        m = row.method
+        print(f"{m.name:26}{m.size:>15}{m.bytes:>11,}{row.error:>12.2e}", end="")
+        for spent, beside in ((row.value, first.value), (row.both, first.both)):
+            if spent is None or beside is None:
                 print("            no gradient", end="")
                 continue
-            one, two = (seconds[f"{m.name} {what} {order}"] for order in ("ordered", "shuffled"))
-            ratio = one / seconds[f"{first.name} {what} ordered"]
-            nano = 1e9 / len(points)
-            print(f"{one * nano:7.1f} /{two * nano:7.1f} {ratio:5.1f}x", end="")
+            one, two = (1e9 * seconds for seconds in spent)
+            print(f"{one:7.1f} /{two:7.1f} {spent[0] / beside[0]:5.1f}x", end="")
         print()
 
 
@@ -249,21 +292,26 @@ def lattice(side: int) -> Points:
     return np.stack(np.meshgrid(axis, axis, indexing="xy"), axis=-1).reshape(-1, 2)
 
 
-def main() -> None:
-    reference = our_grid(CELLS)
+def at_equal_error(cells: int) -> list[Method]:
+    """Our grid, and the cheapest of each other kind whose true error is not above its."""
+    reference = our_grid(cells)
     error = true_error(reference)
-    print(f"limaçon, unit square; true error where |u| <= {NEAR:g}; {SIDE**2:,} points; one core")
-    equal_error = [
-        reference,
-        loosest(lambda m: true_error(m) <= error, 4.0 * error),
-        *(coarsest(make, error) for make in PEERS),
-    ]
+    fit = loosest(lambda m: true_error(m) <= error, 4.0 * error)
+    return [reference, fit, *(coarsest(make, error) for make in PEERS)]
+
+
+def at_equal_memory(reference: Method) -> list[Method]:
+    """Our grid, and of each other kind what takes as many bytes."""
     side = int(np.sqrt(reference.bytes / 8))
-    equal_memory = [
-        reference,
-        largest_within(reference.bytes),
-        *(make(side - 2 * PADDING * (make in PADDED)) for make in PEERS),
-    ]
+    peers = (make(side - 2 * PADDING * (make in PADDED)) for make in PEERS)
+    return [reference, largest_within(reference.bytes), *peers]
+
+
+def main() -> None:
+    equal_error = at_equal_error(CELLS)
+    reference = equal_error[0]
+    equal_memory = at_equal_memory(reference)
+    print(f"limaçon, unit square; true error where |u| <= {NEAR:g}; {SIDE**2:,} points; one core")
     points = lattice(SIDE)
     everywhere = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(everywhere)})
@@ -275,7 +323,8 @@ def main() -> None:
         {
             "points, value+gradient": lambda: reference.both and reference.both(points),
             "grid of nodes, value": lambda: reference.values.grid(SIDE, SIDE),
-        }
+        },
+        time.perf_counter,
     )
     print(f"\non {len(everywhere)} cores, {CELLS}² cells, ns a point")
     for name, median in seconds.items():

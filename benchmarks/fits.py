@@ -1,6 +1,6 @@
 """Fits: leaves, errors, proofs, times; beside the paper's method, other operators, random points.
 
-Run from the repository's root, with the ``test`` extra and fontTools installed:
+Run from the repository's root, with the ``test`` or the ``bench`` extra installed:
 
     python -m benchmarks.fits [--tables ABCDE] [--points 1000000] [--shapes 12]
 
@@ -19,91 +19,56 @@ from __future__ import annotations
 import argparse
 import math
 import os
-import statistics
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from importlib import resources
-from typing import Any
 
 import numpy as np
 
 import splinesdf as ss
+from benchmarks.fit_cases import Case, curve, drawn, glyph, icon, part, seconds
+from benchmarks.fit_methods import METHODS, MOST
+from benchmarks.tables import clock
 from splinesdf.errors import ToleranceNotReached
-from splinesdf.fits.fit import FitResult, fit_steps
-from splinesdf.meshes import Box
+from splinesdf.fits.fit import FitResult
 from splinesdf.paper import tables as paper
 from tests.glyphs import glyphs
 from tests.real_shapes import SMOOTH, formula_shape, icons, outlines
 
-ROUNDS = 5
-SLOW = 2.0  # seconds; what takes longer is timed once
-MOST = 300_000  # cells beyond which the paper's method gives up
 BLOCK = 1_000_000  # random points at a time
 OPERATORS = "SWPV"
-
-
-@dataclass(frozen=True)
-class Case:
-    """A shape, where it is fitted, and the length that tolerances are shares of."""
-
-    name: str
-    shape: ss.Shape
-    domain: Box | None
-    unit: float
-
-    def fit(self, share: float, *, level: float | None = None, **options: Any) -> FitResult:
-        """A fit, over the whole domain or of one level, both given as shares; errors too."""
-        band = None if level is None else (level * self.unit, level * self.unit)
-        return ss.fit(
-            self.shape, tolerance=share * self.unit, domain=self.domain, band=band, **options
-        )
-
-    def start(self, cells: int, level: float | None = None) -> tuple[int, int]:
-        """So many cells along the longer side of the domain."""
-        box = self.domain or self.shape.default_domain(max(0.0, (level or 0.0) * self.unit))
-        width, height = box[2] - box[0], box[3] - box[1]
-        side = max(width, height) / cells
-        return max(1, round(width / side)), max(1, round(height / side))
-
-
-def curve(name: str) -> Case:
-    return Case(name, paper.shape(name), paper.DOMAIN, 1.0)
-
-
-def drawn(shape: ss.Shape, name: str | None = None) -> Case:
-    return Case(name or shape.name, shape, None, shape.size)
-
-
-def glyph(character: str) -> Case:
-    return drawn(glyphs()[f"DejaVuSans:{character}"], f"glyph {character}")
-
-
-def icon(name: str) -> Case:
-    return drawn(icons()[name], name)
-
-
-def part() -> Case:
-    with resources.as_file(resources.files("splinesdf") / "data" / "part.svg") as path:
-        return drawn(ss.read(path), "part.svg")
 
 
 def head(title: str, columns: str) -> None:
     print(f"\n{title}\n{columns}", flush=True)
 
 
-def seconds(runs: Sequence[Callable[[], object]]) -> tuple[list[float], int]:
-    """Medians of the times of runs that take turns, and how many there were."""
-    times: list[list[float]] = [[] for _ in runs]
-    count = 0
-    while count == 0 or (count < ROUNDS and max(map(max, times)) < SLOW):
-        for run, mine in zip(runs, times, strict=True):
-            began = time.perf_counter()
-            run()
-            mine.append(time.perf_counter() - began)
-        count += 1
-    return [statistics.median(mine) for mine in times], count
+@dataclass(frozen=True)
+class Leaves:
+    """A fit with its proof, and seconds with and without it; lengths are shares of the unit."""
+
+    result: FitResult
+    error: float
+    bound: float
+    proved: float
+    believed: float
+    runs: int
+    unproved: int  # leaves of the fit without a proof
+
+    @property
+    def per_leaf(self) -> float:
+        return self.result.evaluations / self.result.cells
+
+
+def leaves(case: Case, share: float) -> Leaves:
+    """One line of table A."""
+    result = case.fit(share)  # also warms up
+    unproved = case.fit(share, certify=False)
+    runs = [partial(case.fit, share), partial(case.fit, share, certify=False)]
+    (proved, believed), count = seconds(runs)
+    error, bound = result.error / case.unit, (result.bound or math.nan) / case.unit
+    return Leaves(result, error, bound, proved, believed, count, unproved.cells)
 
 
 def table_a() -> None:
@@ -123,64 +88,14 @@ def table_a() -> None:
     cases += [(case, (1e-2, 1e-3)) for case in others]
     for case, shares in cases:
         for share in shares:
-            result = case.fit(share)  # also warms up
-            unproved = case.fit(share, certify=False)
-            runs = [partial(case.fit, share), partial(case.fit, share, certify=False)]
-            (proved, believed), count = seconds(runs)
-            error, bound = result.error / case.unit, (result.bound or math.nan) / case.unit
+            row = leaves(case, share)
             print(
-                f"{case.name:12} {share:9.0e} {error:9.3e} {bound:9.3e} {bound / error:7.4f} "
-                f"{result.cells:8} {result.evaluations:12} "
-                f"{result.evaluations / result.cells:9.2f} {proved:8.3f} {believed:9.3f} "
-                f"{proved / believed:6.2f} {count:5} {unproved.cells:8}",
+                f"{case.name:12} {share:9.0e} {row.error:9.3e} {row.bound:9.3e} "
+                f"{row.bound / row.error:7.4f} {row.result.cells:8} {row.result.evaluations:12} "
+                f"{row.per_leaf:9.2f} {row.proved:8.3f} {row.believed:9.3f} "
+                f"{row.proved / row.believed:6.2f} {row.runs:5} {row.unproved:8}",
                 flush=True,
             )
-
-
-def given_up(case: Case, share: float, **options: Any) -> FitResult:
-    """A fit, or the last round that had no more than `MOST` cells."""
-    try:
-        return case.fit(share, max_cells=MOST, **options)
-    except ToleranceNotReached as stopped:
-        best: FitResult = stopped.result
-        return best
-
-
-def uniform(case: Case, share: float) -> FitResult:
-    """The coarsest uniform grid of n x n cells that keeps the tolerance, or the last.
-
-    By bisection, of odd n and of even ones: where a ridge lies on the square's axis, as gamma1's
-    does, it runs through centers or along edges, and one is far better than the other.
-    """
-    return min((bisected(case, share, odd) for odd in (1, 0)), key=by_cells)
-
-
-def by_cells(result: FitResult) -> tuple[bool, int]:
-    return result.stopped != "reached", result.cells
-
-
-def bisected(case: Case, share: float, odd: int) -> FitResult:
-    """The coarsest of the grids whose n is odd, or even, or the last."""
-
-    def at(half: int) -> FitResult:
-        n = 2 * half - odd
-        options: dict[str, Any] = {"space": "uniform", "operator": "W", "domain": case.domain}
-        return next(fit_steps(case.shape, tolerance=share, start=(n, n), **options))
-
-    half = 1
-    while (found := at(half)).stopped != "reached":
-        if 16 * half * half > MOST:
-            return found
-        half *= 2
-    low, high = half // 2, half
-    while high - low > 1:
-        middle = (low + high) // 2
-        tried = at(middle)
-        if tried.stopped == "reached":
-            high, found = middle, tried
-        else:
-            low = middle
-    return found
 
 
 def table_b() -> None:
@@ -188,24 +103,18 @@ def table_b() -> None:
         f"B. the paper's grids at the same true error (given up beyond {MOST:,} cells)",
         "curve    tolerance  method            cells     error    ratio  seconds",
     )
-    methods: dict[str, Callable[[Case, float], FitResult]] = {
-        "hierarchical S": lambda case, share: case.fit(share),
-        "hierarchical W": lambda case, share: case.fit(share, operator="W"),
-        "tensor W": partial(given_up, space="tensor", operator="W"),
-        "uniform W": uniform,
-    }
     for name in ("gamma1", "gamma2"):
         case = curve(name)
         for share in (1e-2, 5e-3, 2e-3, 1e-3, 3e-4, 1e-4):
-            leaves = case.fit(share).cells
-            for method, run in methods.items():
-                began = time.perf_counter()
+            least = case.fit(share).cells
+            for method, run in METHODS.items():
+                began = clock()
                 result = run(case, share)
-                took = time.perf_counter() - began
+                took = clock() - began
                 missed = "" if result.stopped == "reached" else "  gave up"
                 print(
                     f"{name:8} {share:9.0e}  {method:14} {result.cells:8} {result.error:9.2e} "
-                    f"{result.cells / leaves:8.2f} {took:8.2f}{missed}",
+                    f"{result.cells / least:8.2f} {took:8.2f}{missed}",
                     flush=True,
                 )
 

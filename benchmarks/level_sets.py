@@ -1,7 +1,8 @@
 """Level sets made distances again: ours, fast marching and a PDE on the same samples.
 
-Run from the repository's root, with the ``test`` extra and scikit-fmm installed:
+Run from the repository's root; scikit-fmm is named and left out if it is not installed:
 
+    python -m pip install -e ".[bench]"
     python -m benchmarks.level_sets [--sizes 32 64 128] [--cases circle ellipse] [--tables AB]
 
 A  errors of the distance, movement of the zero set, area and seconds of CPU, by halving the step
@@ -26,7 +27,7 @@ import argparse
 import math
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -39,6 +40,7 @@ from scipy.interpolate import RectBivariateSpline
 import splinesdf as ss
 from benchmarks.level_set_cases import Case, cases
 from benchmarks.level_set_peers import PEERS, Reinitialize
+from benchmarks.tables import Entry
 from tests.oracles import polylines
 
 Array = np.ndarray
@@ -46,6 +48,7 @@ ROUNDS = 3
 SLOW = 1.0  # seconds; what takes longer is timed once
 FIXED = 0.1  # the fixed band
 NEAR = 3.0  # steps
+SAMPLES = "samples"  # a method that changes nothing
 DEVIATION = 1e-8  # of our curve's polyline, a share of half the side; its vertices lie on the curve
 HEAD = (
     f"{'method':13} {'n':>4}  {'band':>8} {'fixed':>8} order {'mean':>8} {'whole':>8}  "
@@ -108,7 +111,7 @@ def unchanged(values: Array, step: float, reach: float) -> Array:
 METHODS: dict[str, Callable[[Array, Case, int], tuple[Found, float]]] = {
     "splinesdf": ours,
     **{name: partial(on_grid, method) for name, method in PEERS.items()},
-    "samples": partial(on_grid, unchanged),
+    SAMPLES: partial(on_grid, unchanged),
 }
 
 
@@ -164,20 +167,51 @@ def order(before: float, now: float) -> str:
     return f"{math.log2(before / now):5.2f}" if math.isfinite(before) and now > 0.0 else "     "
 
 
-def table_a(chosen: list[Case], sizes: list[int]) -> None:
+def warm_up() -> dict[str, str]:
+    """Compile and import what all need; give those that are not installed, and why."""
+    first, missing = cases()[0], {}
+    values = first.function(*np.meshgrid(*[first.nodes(32)] * 2))
+    ours(values, first, 32)
+    for name, method in PEERS.items():
+        try:
+            method(values, 1.0, 1.0)
+        except ImportError as error:
+            missing[name] = str(error)
+    return missing
+
+
+def judged(case: Case, name: str, count: int) -> Row:
+    """One method at one size."""
+    x = case.nodes(count)
+    return judge(*METHODS[name](case.function(*np.meshgrid(x, x)), case, count), case, count)
+
+
+def entries(case: Case, count: int, missing: Container[str]) -> list[Entry]:
+    """Seconds a grid and largest errors in the fixed band, for the report; lines alone are none."""
+    result = []
+    for name in METHODS:
+        if name not in missing and name != SAMPLES:
+            row = judged(case, name, count)
+            moved = f"{max(row.there, row.back):.1e}"
+            result.append(Entry(f"{case.name}, {count} steps", name, row.seconds, row.fixed, moved))
+    return result
+
+
+def table_a(chosen: list[Case], sizes: list[int], missing: Container[str]) -> None:
     for case in chosen:
         print(f"\nA. {case.name}\n{HEAD}", flush=True)
-        for name, method in METHODS.items():
+        for name in METHODS:
+            if name in missing:
+                continue
             fixed = back = math.nan
             for count in sizes:
-                x = case.nodes(count)
-                row = judge(*method(case.function(*np.meshgrid(x, x)), case, count), case, count)
+                row = judged(case, name, count)
                 orders = order(fixed, row.fixed), order(back, row.back)
                 errors = (
                     f"{row.band:8.1e} {row.fixed:8.1e} {orders[0]} {row.mean:8.1e} {row.whole:8.1e}"
                     f"  {row.there:8.1e} {row.back:8.1e} {orders[1]} {row.smooth:8.1e}"
                 )
-                if name == "samples":  # no distances: lines alone
+                if name == SAMPLES:  # no distances: lines alone
                     errors = f"{'':42} {row.there:8.1e} {row.back:8.1e} {orders[1]} {'':8}"
                 print(
                     f"{name:13} {count:4}  {errors} {row.area:9.1e} {row.seconds:8.3f}", flush=True
@@ -226,11 +260,13 @@ def main() -> None:
     parser.add_argument("--cases", nargs="+", default=[case.name for case in cases()])
     parser.add_argument("--tables", default="AB", help="which tables")
     options = parser.parse_args()
-    first = cases()[0]
-    ours(first.function(*np.meshgrid(*[first.nodes(32)] * 2)), first, 32)  # compiles
+    missing = warm_up()
+    for name, why in missing.items():
+        print(f"{name}: left out, {why}")
     chosen = [case for case in cases() if case.name in options.cases]
+    tables = {"A": partial(table_a, missing=missing), "B": table_b}
     for name in options.tables.upper():
-        {"A": table_a, "B": table_b}[name](chosen, options.sizes)
+        tables[name](chosen, options.sizes)
 
 
 if __name__ == "__main__":

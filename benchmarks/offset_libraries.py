@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from importlib import util
 from itertools import pairwise
 from typing import Any, Protocol
 
@@ -99,25 +100,43 @@ class Shapely:
 
 
 class Clipper2:
-    name, tunable = "Clipper2 (pyclipr)", True
+    """By pyclipr if it is installed, which is built from source, or else by clipper2-py."""
+
+    name, tunable = "Clipper2", True
 
     def __init__(self) -> None:
-        import pyclipr  # noqa: F401
+        self._make = _by_pyclipr if util.find_spec("pyclipr") else _by_clipper2_py()
 
     def prepare(self, shape: ss.Shape, distance: float, within: float) -> Any:
-        import pyclipr
-
-        made = pyclipr.ClipperOffset()
-        made.scaleFactor = _UNITS / shape.size
-        made.arcTolerance = within * made.scaleFactor  # in whole numbers, unlike the distance
-        made.addPaths(flattened(shape, within), pyclipr.JoinType.Round, pyclipr.EndType.Polygon)
-        return made
+        return self._make(flattened(shape, within), _UNITS / shape.size, within)
 
     def call(self, prepared: Any, distance: float) -> Any:
-        return prepared.execute(distance)
+        return prepared(distance)
 
     def answer(self, result: Any) -> Answer:
-        return _polylines([np.asarray(path)[:, :2] for path in result if len(path)])
+        return _polylines([path for path in result if len(path)])
+
+
+def _by_pyclipr(lines: list[np.ndarray], scale: float, within: float) -> Any:
+    import pyclipr
+
+    made = pyclipr.ClipperOffset()
+    made.scaleFactor = scale
+    made.arcTolerance = within * scale  # in whole numbers, unlike the distance
+    made.addPaths(lines, pyclipr.JoinType.Round, pyclipr.EndType.Polygon)
+    return lambda distance: [np.asarray(path)[:, :2] for path in made.execute(distance)]
+
+
+def _by_clipper2_py() -> Any:
+    import clipper2
+
+    def make(lines: list[np.ndarray], scale: float, within: float) -> Any:
+        made = clipper2.ClipperOffset(2.0, within * scale)
+        whole = [np.rint(line * scale).astype(np.int64) for line in lines]
+        made.add_paths(whole, clipper2.JoinType.ROUND, clipper2.EndType.POLYGON)
+        return lambda distance: [path / scale for path in made.execute(distance * scale)]
+
+    return make
 
 
 class CavalierContours:

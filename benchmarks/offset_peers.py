@@ -1,9 +1,9 @@
 """Trimmed offsets beside those of shapely, Clipper2 and CavalierContours, at equal error.
 
-Run from the repository's root; peers that are not installed are left out, but shapely is needed to
-measure:
+Run from the repository's root; peers that are not installed are named and left out, but shapely is
+needed to measure:
 
-    pip install shapely pyclipr cavaliercontours-python matplotlib fonttools
+    python -m pip install -e ".[bench]"
     python -m benchmarks.offset_peers [--shapes gamma2 part] [--tolerances 1e-4 1e-6 1e-8]
         [--repeats 5] [--cores 1]
 
@@ -13,28 +13,27 @@ Hausdorff distance to the exact trimmed offset, is within the tolerance and not 
 no setting gets there, the cheapest one whose error is near its best is shown, and marked. Making
 the input is timed apart ("prepare"); for us that is the boundary of a fresh shape, and an offset
 is one of a shape that was never offset before. Rounds go from library to library, and medians
-are shown: what else the machine does hits all alike.
+are shown: what else the machine does hits all alike. With ``--cores 1`` seconds are those of the
+CPU. Where our own time goes is printed last, see `offset_profile`.
 """
 
 from __future__ import annotations
 
 import argparse
-import cProfile
-import pstats
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from statistics import median
-from typing import Any
 
 import numpy as np
 
 import splinesdf as ss
 from benchmarks.distance_speed import bound, glyph
 from benchmarks.offset_libraries import LIBRARIES, Clipper2, Library, Ours, Shapely
+from benchmarks.offset_profile import stages, table
 from benchmarks.offset_truth import FLATTENED, Answer, Miss, Truth, miss, true_offset
+from benchmarks.tables import Entry, clock, markdown
 
 # The measured error should be this share of the tolerance at least: below, a peer works too hard.
 ENOUGH = 0.7
@@ -99,32 +98,35 @@ def _paper(name: str) -> ss.Shape:
         return replace(ss.read(file), name=name)
 
 
-def _part() -> ss.Shape:
-    with resources.as_file(resources.files("splinesdf") / "data" / "part.svg") as file:
-        return ss.read(file)
-
-
 # A shape and two distances, one a side. The ellipse's two and the inner ones of limaçon and keyhole
 # are whole, the others trimmed; no two loops of the part or the glyph meet.
 SHAPES: dict[str, tuple[Callable[[], ss.Shape | None], tuple[float, float]]] = {
     "gamma1": (lambda: _paper("gamma1"), (-0.1, 0.1)),
     "gamma2": (lambda: _paper("gamma2"), (-0.05, 0.15)),
     "gamma3": (lambda: _paper("gamma3"), (-0.03, 0.03)),
-    "part": (_part, (-2.0, 2.0)),
+    "part": (lambda: ss.example("part"), (-2.0, 2.0)),
     "glyph": (glyph, (-40.0, 40.0)),
     "keyhole": (lambda: ss.Shape.from_svg_path(KEYHOLE, name="keyhole"), (-2.0, 2.0)),
 }
 
 
-def libraries() -> list[Library]:
-    """Ourselves first, then every peer that is installed."""
-    result = []
+def libraries() -> tuple[list[Library], dict[str, str]]:
+    """Ourselves first, then every peer that is installed; and why others are not."""
+    result: list[Library] = []
+    missing = {}
     for kind in LIBRARIES:
         try:
             result.append(kind())
-        except (ImportError, OSError) as missing:
-            print(f"{kind.name}: left out: {missing}")
-    return result
+        except (ImportError, OSError) as error:
+            missing[kind.name] = str(error)
+    return result, missing
+
+
+def warm_up(everyone: Sequence[Library]) -> None:
+    """Compile and import what everyone needs."""
+    for library in everyone:
+        warm = _paper("gamma2")
+        library.call(library.prepare(warm, -0.05, 1e-3), -0.05)
 
 
 def tuned(library: Library, truth: Truth, tolerance: float) -> Contestant:
@@ -190,12 +192,24 @@ def ask(field_: Sequence[Library], truth: Truth, share: float, repeats: int) -> 
 
 
 def _time(one: Contestant, shape: ss.Shape, distance: float) -> None:
-    began = time.perf_counter()
+    began = clock()
     prepared = one.library.prepare(shape, distance, one.within)
-    ready = time.perf_counter()
+    ready = clock()
     one.library.call(prepared, distance)
-    one.calling.append(time.perf_counter() - ready)
+    one.calling.append(clock() - ready)
     one.preparing.append(ready - began)
+
+
+def entry(row: Row) -> Entry:
+    """A row of the report."""
+    return Entry(
+        f"{row.shape} at {row.distance:g}, {row.tolerance:.0e}",
+        row.library,
+        row.call,
+        max(row.spurious, row.lacking),
+        f"{row.pieces}; {1e3 * row.prepare:.3g} ms",
+        row.note,
+    )
 
 
 HEADER = (
@@ -234,20 +248,20 @@ def nested(shape: ss.Shape, repeats: int) -> tuple[float, float, str]:
     ours, theirs = Ours(), Shapely()
     spent: tuple[list[float], ...] = ([], [], [], [], [])
     for _ in range(repeats):
-        began = time.perf_counter()
+        began = clock()
         prepared, _ = ours.prepare(shape, 0.0, tolerance)
-        ready = time.perf_counter()
+        ready = clock()
         contours = ss.offset(prepared, distances, tolerance=tolerance)
-        ended = time.perf_counter()
+        ended = clock()
         region, quarter = theirs.prepare(shape, steps[-1], tolerance)
-        given = time.perf_counter()
+        given = clock()
         buffers = [region.buffer(d, quad_segs=quarter) for d in distances]
-        done = time.perf_counter()
+        done = clock()
         prepared, _ = ours.prepare(shape, 0.0, tolerance)
         middle = distances[NESTED // 4]
-        one = time.perf_counter()
+        one = clock()
         ss.offset(prepared, middle, tolerance=tolerance)
-        single = time.perf_counter() - one
+        single = clock() - one
         for times, seconds in zip(
             spent, (ready - began, ended - ready, given - ended, done - given, single), strict=True
         ):
@@ -335,23 +349,6 @@ def _met(holds: bool) -> str:
     return "met" if holds else "NOT met"
 
 
-def profile(shape: ss.Shape, distance: float) -> None:
-    """What bounds an offset at 1e-4: the functions in which this thread spends most itself."""
-    prepared = Ours().prepare(shape, distance, 1e-4 * shape.size)
-    watch = cProfile.Profile()
-    watch.runcall(Ours().call, prepared, distance)
-    stats: Any = pstats.Stats(watch)
-    print(
-        f"\nWhere one offset at 1e-4 spends its time ({shape.name} at {distance:g}; compiled code "
-        "counts for its caller):\n"
-    )
-    ranked = sorted(stats.stats.items(), key=lambda item: -item[1][2])[:8]
-    for (file, _, name), (_, calls, own, _, _) in ranked:
-        print(
-            f"- {100 * own / stats.total_tt:.0f} %: {file.rsplit('/', 1)[-1]} {name}, {calls} calls"
-        )
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description="Trimmed offsets beside those of other libraries.")
     parser.add_argument("--shapes", nargs="+", choices=SHAPES, default=list(SHAPES))
@@ -362,10 +359,10 @@ def main() -> None:
     options = parser.parse_args()
     if options.cores and not bound(options.cores):
         return
-    everyone = libraries()
-    for library in everyone:  # compiles and imports
-        warm = _paper("gamma2")
-        library.call(library.prepare(warm, -0.05, 1e-3), -0.05)
+    everyone, missing = libraries()
+    for name, why in missing.items():
+        print(f"{name}: left out: {why}")
+    warm_up(everyone)
     rows: list[Row] = []
     print(f"\n{HEADER}")
     shapes = {name: made for name in options.shapes if (made := SHAPES[name][0]()) is not None}
@@ -390,8 +387,10 @@ def main() -> None:
     goals(rows, in_nests)
     coarse = [row for row in rows if row.tolerance == 1e-4 and row.library == Ours.name]
     if coarse:
-        slowest = max(coarse, key=lambda row: row.call)
-        profile(next(s for s in shapes.values() if s.name == slowest.shape), slowest.distance)
+        slow = max(coarse, key=lambda row: row.call)
+        shape = next(shape for shape in shapes.values() if shape.name == slow.shape)
+        print(f"\nWhere one offset at 1e-4 spends its time ({shape.name} at {slow.distance:g}):\n")
+        print(markdown(table(stages(shape, slow.distance, 1e-4 * shape.size, 20))))
 
 
 if __name__ == "__main__":

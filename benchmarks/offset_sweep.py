@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import statistics
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import cache
@@ -73,7 +73,7 @@ class Run:
     undecided: list[str] = field(default_factory=list)
 
 
-GROUPS: dict[str, Callable[[], dict[str, ss.Shape]]] = {
+GROUPS: dict[str, Callable[[], Mapping[str, ss.Shape]]] = {
     "curves": lambda: {name: gamma(name) for name in FORMULAS},
     "glyphs": glyphs,
     "icons": icons,
@@ -83,7 +83,7 @@ GROUPS: dict[str, Callable[[], dict[str, ss.Shape]]] = {
 
 
 @cache
-def group(name: str) -> dict[str, ss.Shape]:
+def group(name: str) -> Mapping[str, ss.Shape]:
     return GROUPS[name]()
 
 

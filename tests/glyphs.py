@@ -5,7 +5,7 @@ The outlines are quadratic (TrueType), in font units, 2048 to the em, filled by 
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import matplotlib
@@ -13,6 +13,7 @@ from fontTools.pens.svgPathPen import SVGPathPen
 from fontTools.ttLib import TTFont
 
 import splinesdf as ss
+from tests.drawn_when_asked import Drawn
 
 CHARACTERS = {
     "DejaVuSans": (
@@ -29,15 +30,20 @@ EM = 2048
 
 
 @cache
-def glyphs() -> dict[str, ss.Shape]:
+def glyphs() -> Drawn:
     """Shapes by name, such as ``DejaVuSans:Å``; the y axis points up."""
-    result = {}
-    for font_name, characters in CHARACTERS.items():
-        font = _font(font_name)
-        for character in characters:
-            name = f"{font_name}:{character}"
-            result[name] = ss.Shape.from_svg_path(glyph_path(font, character), name=name)
-    return result
+    return Drawn(
+        {
+            f"{font_name}:{character}": partial(_glyph, font_name, character)
+            for font_name, characters in CHARACTERS.items()
+            for character in characters
+        }
+    )
+
+
+def _glyph(font_name: str, character: str) -> ss.Shape:
+    path = glyph_path(_font(font_name), character)
+    return ss.Shape.from_svg_path(path, name=f"{font_name}:{character}")
 
 
 def glyph_path(font: TTFont, character: str) -> str:
@@ -48,5 +54,6 @@ def glyph_path(font: TTFont, character: str) -> str:
     return str(pen.getCommands())
 
 
+@cache
 def _font(name: str) -> TTFont:
     return TTFont(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"{name}.ttf")

@@ -13,6 +13,7 @@ the closest to that, and a diagonal. All of the boundary so near, as polylines, 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -74,23 +75,39 @@ def counted(shape: ss.Shape, distance: float, fineness: float) -> list[int]:
     while True:
         size = unit * 2.0**level
         middles = (2 * cells + (NINE[8] << level)) * (0.5 * unit) + corner
-        at_middles = ss.project(shape, middles)
-        pure = np.abs(at_middles.distance - distance) > np.sqrt(0.5) * size
+        fine, last = size <= target, level == 1
+        # Of cells that are halved in any case nothing is asked but whether they are pure.
+        looks = fine or last
+        found = ss.project(shape, middles) if looks else None
+        known = ss.signed_distance(shape, middles) if found is None else found.distance
+        pure = np.abs(known - distance) > np.sqrt(0.5) * size
+        simple, cone = pure.copy(), np.full(len(cells), np.inf)
         # The other eight of a pure cell are on its middle's side, and nothing else is asked.
-        rest = np.flatnonzero(~pure)
-        own = ss.Projection(*(part[rest] for part in at_middles))
-        around, nodes = eight(shape, cells[rest], level, unit, corner)
-        below = np.repeat((at_middles.distance < distance)[:, None], 4, axis=1)
-        below[rest] = around.distance[:, :4] < distance
-        cone = np.zeros(len(cells))
-        cone[rest] = in_cone(own, around, middles[rest], nodes)
-        fine = size <= target
-        hopeful = ~pure & fine & (cone < CONE) & ~alternates(below)
-        if distance != 0.0:
-            some = ss.Projection(*(part[hopeful] for part in at_middles))
-            hopeful[hopeful] = sure_cone(shape, middles[hopeful], some, size) < CONE
-        simple = pure | hopeful
-        last = level == 1 or (fine and np.sum(~simple) > MOST)
+        below = np.repeat((known < distance)[:, None], 4, axis=1)
+        if found is not None:
+            rest = np.flatnonzero(~pure)
+            own = picked(found, rest)
+            at_corners, nodes = looked_at(shape, cells[rest], NINE[:4], level, unit, corner)
+            below[rest] = at_corners.distance < distance
+            cone[rest] = in_cone([(at_corners, nodes), alone(own, middles[rest])])
+            # These say soonest where there is no cone; where there may be one, all that is near.
+            hopeful = fine & (cone[rest] < CONE) & ~alternates(below[rest])
+            if distance != 0.0:
+                sure = rest[hopeful]
+                simple[sure] = sure_cone(shape, middles[sure], picked(found, sure), size) < CONE
+            left = ~simple[rest]
+            rest = rest[left]
+            at_sides = looked_at(shape, cells[rest], NINE[4:8], level, unit, corner)
+            cone[rest] = in_cone(
+                [
+                    (picked(at_corners, left), nodes[left]),
+                    at_sides,
+                    alone(picked(found, rest), middles[rest]),
+                ]
+            )
+            if distance == 0.0:
+                simple[rest] = hopeful[left] & (cone[rest] < CONE)
+            last |= fine and np.sum(~simple) > MOST
         if last:
             simple |= cone < FINEST_CONE
         done = simple | last
@@ -133,28 +150,40 @@ def square(shape: ss.Shape, distance: float) -> tuple[float, np.ndarray]:
     return side, middle - 0.5 * side
 
 
-def eight(
-    shape: ss.Shape, cells: np.ndarray, level: int, unit: float, corner: np.ndarray
+def picked(found: ss.Projection, which: np.ndarray) -> ss.Projection:
+    return ss.Projection(*(part[which] for part in found))
+
+
+def alone(found: ss.Projection, points: np.ndarray) -> tuple[ss.Projection, np.ndarray]:
+    """One node of each cell, as `looked_at` gives several."""
+    return picked(found, np.s_[:, None]), points[:, None]
+
+
+def looked_at(
+    shape: ss.Shape,
+    cells: np.ndarray,
+    nine: np.ndarray,
+    level: int,
+    unit: float,
+    corner: np.ndarray,
 ) -> tuple[ss.Projection, np.ndarray]:
-    """What `project` says of the cells' corners and sides' middles, and these: (n, 8) each.
+    """What `project` says of some of the cells' nine, and these: (n, some) each.
 
     Neighbors share them: each is asked for once.
     """
-    at = 2 * (cells[:, None] >> level) + NINE[:8]  # in half cells
+    at = 2 * (cells[:, None] >> level) + nine  # in half cells
     _, first, which = np.unique(
         (at[..., 0] << LEVELS + 1) + at[..., 1], return_index=True, return_inverse=True
     )
     nodes = (at.reshape(-1, 2)[first] << level) * (0.5 * unit) + corner
-    found, which = ss.project(shape, nodes), which.reshape(at.shape[:2])
-    return ss.Projection(*(part[which] for part in found)), nodes[which]
+    which = which.reshape(at.shape[:2])
+    return picked(ss.project(shape, nodes), which), nodes[which]
 
 
-def in_cone(
-    own: ss.Projection, around: ss.Projection, middles: np.ndarray, nodes: np.ndarray
-) -> np.ndarray:
+def in_cone(looks: Sequence[tuple[ss.Projection, np.ndarray]]) -> np.ndarray:
     """The angle of the narrowest cone that has all gradients of a cell in it: (n,)."""
-    away = np.concatenate([nodes - around.point, (middles - own.point)[:, None]], axis=1)
-    distance = np.concatenate([around.distance, own.distance[:, None]], axis=1)
+    away = np.concatenate([nodes - found.point for found, nodes in looks], axis=1)
+    distance = np.concatenate([found.distance for found, _ in looks], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         gradients = away / distance[..., None]
     angles = np.sort(np.arctan2(gradients[..., 1], gradients[..., 0]), axis=1)  # NaN last

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,6 +11,7 @@ import numpy as np
 
 import splinesdf as ss
 from tests import oracles
+from tests.drawn_when_asked import Drawn
 from tests.named_shapes import FORMULAS
 from tests.precise import Fourier
 
@@ -18,15 +19,17 @@ DATA = Path(__file__).parent / "data"
 
 
 @cache
-def icons() -> dict[str, ss.Shape]:
+def icons() -> Drawn:
     """Fifty icons of Bootstrap Icons; y points down."""
-    return {path.stem: ss.read(path) for path in sorted((DATA / "icons").glob("*.svg"))}
+    paths = sorted((DATA / "icons").glob("*.svg"))
+    return Drawn({path.stem: partial(ss.read, path) for path in paths})
 
 
 @cache
-def outlines() -> dict[str, ss.Shape]:
+def outlines() -> Drawn:
     """Polygons of 2,000 to 8,000 corners; where the source is coarse they touch themselves."""
-    return {path.stem: ss.read(path) for path in sorted((DATA / "outlines").glob("*.csv"))}
+    paths = sorted((DATA / "outlines").glob("*.csv"))
+    return Drawn({path.stem: partial(ss.read, path) for path in paths})
 
 
 def _series(cos: dict[int, str], sin: dict[int, str]) -> dict[int, tuple[Fraction, Fraction]]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import pytest
 
 import splinesdf as ss
 from tests import oracles
+from tests.drawn_when_asked import Drawn
 from tests.glyphs import glyphs
 from tests.named_shapes import Loops, rebuilt
 from tests.precise import Bezier, precise_distance
@@ -19,8 +21,11 @@ ROUNDING = 4e-15
 
 GLYPHS = [f"DejaVuSans:{character}" for character in "Ag&Çßé8"]
 ICONS = ["apple", "bug", "cart", "hurricane", "openai", "umbrella-fill"]
-SHAPES = {name: glyphs()[name] for name in GLYPHS} | {name: icons()[name] for name in ICONS}
-names = pytest.mark.parametrize("name", SHAPES)
+SHAPES = Drawn(
+    {name: partial(glyphs().__getitem__, name) for name in GLYPHS}
+    | {name: partial(icons().__getitem__, name) for name in ICONS}
+)
+names = pytest.mark.parametrize("name", list(SHAPES))
 
 
 def probes(shape: ss.Shape) -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.fits.fit import fit_around
 from tests.named_shapes import UNIT, gamma
 from tests.real_shapes import icons
 
@@ -94,3 +95,22 @@ def test_bad_bands_are_refused_in_one_line(band: object) -> None:
     with pytest.raises(ss.InputError, match="band") as caught:
         ss.fit(gamma("gamma1"), tolerance=0.1, band=band)  # type: ignore[arg-type]
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("name", "distance"), [("gamma2", 0.02), ("github", -0.4)])
+def test_a_fit_for_contours_only_is_the_fit(name: str, distance: float) -> None:
+    shape = icons()[name] if name in icons() else gamma(name)
+    tolerance = 1e-3 * shape.size
+    measured = ss.fit(shape, tolerance, band=(distance, distance), max_cells=10_000)
+    plain = fit_around(shape, distance, tolerance, max_cells=10_000)
+    assert plain.mesh == measured.spline.mesh
+    assert np.array_equal(plain.ordinates, measured.spline.ordinates)
+    errors = []
+    for make in (
+        lambda: ss.fit(shape, 1e-3 * tolerance, band=(distance, distance), max_cells=500),
+        lambda: fit_around(shape, distance, 1e-3 * tolerance, max_cells=500),
+    ):
+        with pytest.raises(ss.ToleranceNotReached) as caught:
+            make()
+        errors.append(str(caught.value))
+    assert errors[0] == errors[1]

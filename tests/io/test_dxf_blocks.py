@@ -152,7 +152,7 @@ def test_blocks_nested_deeper_than_calls_may_be_are_refused(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("block", [{}, {"10": "1e999"}])
-@pytest.mark.parametrize("insert", [{"10": "-inf"}, {"41": "1e308"}, {"41": "nan"}, {}])
+@pytest.mark.parametrize("insert", [{"10": "-inf"}, {"41": "1.7e308"}, {"41": "nan"}, {}])
 def test_blocks_inserted_nowhere_are_named(
     tmp_path: Path, block: dict[str, str], insert: dict[str, str]
 ) -> None:

@@ -29,7 +29,7 @@ CLOSE = 1e-11
 def trimmed_shape(name: str) -> ss.Shape:
     if name.startswith("gamma"):
         return gamma(name)
-    return icons()[name] if name in icons() else {**glyphs(), **outlines()}[name]
+    return next(some for some in (icons(), glyphs(), outlines()) if name in some)[name]
 
 
 @pytest.mark.parametrize("share", SHARES)

@@ -116,15 +116,13 @@ def test_a_shape_drawn_backwards_is_turned_around() -> None:
     assert np.all(back.interval[:, 0] > back.interval[:, 1])
 
 
-DRAWN = {
-    **{f"glyph {n}": s for n, s in glyphs().items()},
-    **{f"icon {n}": s for n, s in icons().items()},
-}
+DRAWN = {"glyph": glyphs, "icon": icons}
 
 
-@pytest.mark.parametrize("name", sorted(DRAWN))
+@pytest.mark.parametrize("name", sorted(f"{kind} {n}" for kind in DRAWN for n in DRAWN[kind]()))
 def test_left_of_real_boundaries_is_inside_and_right_is_outside(name: str) -> None:
-    shape = DRAWN[name]
+    kind, _, drawing = name.partition(" ")
+    shape = DRAWN[kind]()[drawing]
     boundary = shape.boundary
     every = np.arange(len(boundary.start))
     half = np.full(len(every), 0.5)

@@ -263,6 +263,28 @@ def fit_steps(
     shape: Shape, tolerance: float | None = None, **options: Unpack[FitOptions]
 ) -> Iterator[FitResult]:
     """The loop of `fit`, one result a round; the last one says why it ended and raises nothing."""
+    yield from _rounds(shape, tolerance, options, measured=True)
+
+
+def fit_around(shape: Shape, distance: float, tolerance: float, *, max_cells: int) -> SplineSDF:
+    """Approximate as `fit` does around one level, for its contours only.
+
+    The tolerance is proved to be kept. The largest error is not looked for, which takes longer
+    than the fit where the boundary runs back and forth within rounding.
+
+    Raises
+    ------
+    ToleranceNotReached
+    """
+    options: FitOptions = {"band": (distance, distance), "max_cells": max_cells}
+    *_, result = _rounds(shape, tolerance, options, measured=False)
+    return require_reached(result).spline
+
+
+def _rounds(
+    shape: Shape, tolerance: float | None, options: FitOptions, *, measured: bool
+) -> Iterator[FitResult]:
+    """The loop; unless its largest error is measured, a fit that is proved has no bound."""
     target = ShapeTarget(check_shape(shape))
     asked = request_of(target, tolerance, options)
     tolerance, bands, certify = asked.tolerance, asked.bands, asked.certify
@@ -280,7 +302,7 @@ def fit_steps(
         if stopped == "refining" and trial.plan(np.flatnonzero(bad)) > asked.max_cells:
             stopped = "max_cells"
         error, bound = float(known.low[known.counts].max(initial=0.0)), None
-        if stopped != "refining":
+        if stopped != "refining" and (measured or stopped != "reached"):
             error, bound = largest_error(target, spline, trial.center, bands, known)
             # What is left to do around bands may be nothing in them.
             stopped = "reached" if certify and bound <= tolerance else stopped

@@ -17,7 +17,7 @@ from splinesdf.contours.contour import Contour, evaluate
 from splinesdf.contours.nesting import nested
 from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError
-from splinesdf.fits.fit import fit
+from splinesdf.fits.fit import fit_around
 from splinesdf.ground.arrays import as_floats, finite, positive, shown
 from splinesdf.ground.brief import counted
 from splinesdf.ground.progress import Report, checked_report, tell
@@ -227,11 +227,11 @@ def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
         return [replace(hull_offset(shape, distance, tolerance), tolerance=tolerance)]
     # A boundary that crosses itself within rounding has parallels with loose ends. Level sets of
     # splines have none, whatever the spline is a fit of.
-    fitted = fit(shape, tolerance=tolerance, band=(distance, distance), max_cells=_MOST_CELLS)
+    spline = fit_around(shape, distance, tolerance, max_cells=_MOST_CELLS)
     return nested(
         [
             replace(contour, tolerance=tolerance, fitted=True, parent=None)
-            for contour in fitted.spline.contours(distance)
+            for contour in spline.contours(distance)
         ]
     )
 

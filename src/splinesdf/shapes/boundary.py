@@ -32,6 +32,10 @@ _NO_SPECK = 4.0
 # Chains longer than this many times what counts as one point have their ends moved to where others
 # end. Smaller: a chain might shrink to a point.
 _LONG = 8.0
+# Ends that nothing leads on from are led on to what begins this near, as a share of the size. It is
+# the length below which a slit may be kept or dropped (see `splinesdf.shapes.sides`). Larger: a
+# boundary that lacks a part is closed by a step; smaller: rounding where contours touch is refused.
+_LOOSE = 1e-7
 
 
 def touching_of(largest: float) -> float:
@@ -102,7 +106,7 @@ def filled_boundary(outline: Arclets, least: int, largest: float) -> Arclets | N
         return outline
     healed = _cut_in_vain(outline, parts, keep, left, 2.0 * MERGE * touching)
     parts, chains = without_cuts(parts, healed)
-    return _rebuild(outline, parts, keep[chains], left[chains], touching)
+    return _closed(_rebuild(outline, parts, keep[chains], left[chains], touching))
 
 
 def some_boundary(outline: Arclets, fill: str, largest: float) -> Arclets:
@@ -218,6 +222,36 @@ def _restrict(arcs: Arcs, interval: Floats) -> Arcs:
         result.start[~whole] = cut.start[part][~whole]
         result.interval[~whole] = cut.interval[part][~whole]
     return result
+
+
+def _closed(boundary: Arclets) -> Arclets:
+    """The boundary with ends that are still open led on to what begins next to them.
+
+    Where many contours touch within rounding, chains as short as that may be kept in vain. No
+    boundary is better than one that is open farther than that: what is inside would be anyone's
+    guess.
+    """
+    ends = np.flatnonzero(boundary.following < 0)
+    if not len(ends):
+        return boundary
+    following = boundary.following.copy()
+    begins = np.ones(len(following), dtype=bool)
+    begins[following[following >= 0]] = False
+    allowed = _LOOSE * float(np.ptp(boundary.boxes[0].reshape(2, 2), axis=0).max())
+    for end in ends.tolist():
+        starts = np.flatnonzero(begins)
+        gap = np.hypot(*(boundary.start[starts] - boundary.end[end]).T)
+        nearest = int(np.argmin(gap))
+        if gap[nearest] > allowed:
+            x, y = boundary.end[end] + boundary.origin
+            raise InputError(
+                f"expected contours that touch or cross clearly, got some that rounding leaves "
+                f"open near ({x:.9g}, {y:.9g}): move them apart, or onto each other"
+            )
+        following[end], begins[starts[nearest]] = starts[nearest], False
+        boundary.end[end] = boundary.start[starts[nearest]]
+        boundary.arcs[end, 1:3] = boundary.end[end]
+    return boundary._replace(following=following)
 
 
 def _stitch(boundary: Arclets, first: Ints, second: Ints, near: float) -> Arclets:

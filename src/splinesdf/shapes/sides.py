@@ -124,7 +124,7 @@ def _others(
 def bounding(outline: Arclets, parts: Parts, sides: Sides, touching: float) -> tuple[Bools, Bools]:
     """Which chains bound what is filled, and whether the inside is on their left."""
     keep, left = sides.left != sides.right, sides.left.copy()
-    tip = np.zeros(len(keep), dtype=bool)
+    tips, tip = [], np.zeros(len(keep), dtype=bool)
     size = float(np.ptp(outline.boxes[0].reshape(2, 2), axis=0).max())
     tiny = sides.length < _SHORTEST_SLIT * size
     for run, before in _doubtful_runs(parts, sides, keep, tiny):
@@ -133,8 +133,12 @@ def bounding(outline: Arclets, parts: Parts, sides: Sides, touching: float) -> t
         thin = length < _LONGEST_TIP * size and apart > _ON_TOP * touching
         if thin or length < _SHORTEST_SLIT * size:
             tip[run], left[run] = True, left[before]
-    keep &= ~_repeated(outline, parts, sides, keep, touching)
-    keep |= tip
+            tips.append((run, before))
+    keep &= ~_repeated(outline, parts, sides, keep, tip, touching)
+    # What leads on from a chain that is drawn again is drawn again with it; from another it leads
+    # on, also where two contours touch, and another tip lies on it.
+    for run, before in tips:
+        keep[run] |= keep[before]
     # The ends of a sliver that is closed: its sides are gone, they would be left alone.
     short = ~parts.closed & (sides.length <= MERGE * touching)
     alone = short & ~(keep[parts.following] | keep[previous_of(parts.following)])
@@ -163,8 +167,12 @@ def _doubtful_runs(
     return result
 
 
-def _repeated(outline: Arclets, parts: Parts, sides: Sides, keep: Bools, touching: float) -> Bools:
-    """Chains that lie on top of an earlier one that is kept, from end to end.
+def _repeated(
+    outline: Arclets, parts: Parts, sides: Sides, keep: Bools, tip: Bools, touching: float
+) -> Bools:
+    """Chains that lie on top of an earlier one that is kept, from end to end; tips come first.
+
+    A tip leads on from one chain to the next. Dropped, it would leave these open.
 
     Each knows one other: of three or more on top of one another those known by any are one group,
     and lines with the same ends.
@@ -196,11 +204,13 @@ def _repeated(outline: Arclets, parts: Parts, sides: Sides, keep: Bools, touchin
     lines = np.flatnonzero(line)
     one = np.concatenate([chain[linked], lines])
     two = np.concatenate([other[linked], lines[first[which.ravel()]] if len(lines) else lines])
-    earliest, changed = np.arange(len(keep)), True
+    rank = np.empty(len(keep), dtype=np.int64)
+    rank[np.argsort(~tip, kind="stable")] = np.arange(len(keep))
+    earliest, changed = rank.copy(), True
     while changed:  # each round some become earlier, or it ends
         before = earliest.copy()
         least = np.minimum(earliest[one], earliest[two])
         np.minimum.at(earliest, one, least)
         np.minimum.at(earliest, two, least)
         changed = not np.array_equal(before, earliest)
-    return np.asarray(earliest < np.arange(len(keep)))
+    return np.asarray(earliest < rank)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from splinesdf.ground.arrays import Floats
+from splinesdf.io.readers.dxf_edges import LARGEST
 
 # An inserted block whose heights mix with x and y by more than this share is tilted: less is
 # rounding of a file's digits.
@@ -81,7 +82,7 @@ def _seen(entities: Iterable[Any], around: Seen, frozen: frozenset[str]) -> Iter
             for insert in entity.multi_insert() if entity.mcount > 1 else (entity,):
                 with np.errstate(over="ignore", invalid="ignore"):
                     matrix = np.reshape(list(insert.matrix44()), (4, 4)) @ around.map
-                if np.isfinite(matrix).all():
+                if np.abs(matrix).max() <= LARGEST:
                     yield from _seen(inner, seen._replace(map=matrix), frozen)
                 else:  # it is inserted nowhere
                     yield seen

@@ -20,7 +20,7 @@ from splinesdf.shapes.sources.nurbs import nurbs_pieces
 # A direction that is off the vertical by less is rounding of a file's digits.
 _UPRIGHT = 1e-9
 # Numbers beyond this are no drawing's, and products of theirs overflow.
-_LARGEST = 1e100
+LARGEST = 1e100
 # Arcs of a smaller bulge, the tangent of a quarter of their angle, are cubics to rounding: these
 # miss 0.02 of the fifth power of the bulge, in chords. Larger: that could be seen; smaller: the
 # center is so far away that its rounding is seen.
@@ -44,7 +44,7 @@ def is_tilted(entity: Any) -> bool:
 
 
 def _check_usable(*numbers: float) -> None:
-    if not all(abs(number) <= _LARGEST for number in numbers):
+    if not all(abs(number) <= LARGEST for number in numbers):
         raise Flat("with numbers beyond use")
 
 
