@@ -38,7 +38,7 @@ def test_all_programs_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     blocks = BLOCK.findall(PAGE.read_text("utf-8"))
     for text in blocks:
         exec(text, names)
-    assert len(blocks) == 6
+    assert len(blocks) == 7
     assert meshio.read("field.vtu").cells[0].type == "triangle6"
     assert abs(names["area"] - names["exact"]) < 1e-3
     assert abs(names["exact"] - 0.345575) < 1e-2  # that of a limaçon: 11 π / 100

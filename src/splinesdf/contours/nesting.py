@@ -8,7 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from splinesdf.contours.contour import Contour
+from splinesdf.contours.extremes import evaluate_each
 from splinesdf.ground.arrays import Bools, Floats, Ints
+
+# Where on a contour points are taken, as shares of its arcs: nowhere that a drawing would put a
+# contact, such as a half or a third.
+_PLACES = np.array([0.1307, 0.4729, 0.8213])
 
 
 def nested(contours: Sequence[Contour]) -> list[Contour]:
@@ -29,14 +34,15 @@ def nested(contours: Sequence[Contour]) -> list[Contour]:
         return [_inside(contour, None) for contour in contours]
     low = np.array([contour.arcs.min(axis=(0, 1)) for contour in contours])
     high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
-    first = np.array([contour.arcs[0, 0] for contour in contours])
+    places = np.array([_places(contour) for contour in contours])
     encloses = np.zeros((count, count), dtype=np.bool_)
     for i, contour in enumerate(contours):
         if contour.closed:
-            may = np.flatnonzero(np.all((low[i] <= first) & (first <= high[i]), axis=1))
+            within = (low[i] <= places) & (places <= high[i])
+            may = np.flatnonzero(np.count_nonzero(within.all(axis=2), axis=1) >= 2)
             may = may[may != i]
             if len(may):
-                encloses[i, may] = enclosed(contour, first[may])
+                encloses[i, may] = _most_enclosed(contour, places[may])
     # The depth grows by one from a contour to those directly inside it.
     depth = encloses.sum(axis=0)
     result: list[Contour | None] = [None] * count
@@ -48,7 +54,7 @@ def nested(contours: Sequence[Contour]) -> list[Contour]:
 
 
 def smallest_around(contours: Sequence[Contour]) -> list[int]:
-    """Of each contour, the row of the smallest one that encloses where it starts, or -1.
+    """Of each contour, the row of the smallest one that encloses most of it, or -1.
 
     Parameters
     ----------
@@ -60,15 +66,35 @@ def smallest_around(contours: Sequence[Contour]) -> list[int]:
     high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
     result = [-1] * len(contours)
     for j, contour in enumerate(contours):
-        start = contour.arcs[0, 0]
+        places = _places(contour)
+        middle = places[1]
         # Of equal ones, which are the same contour twice, neither is in the other.
-        may = np.all((low <= start) & (start <= high), axis=1) & (areas > areas[j])
+        may = np.all((low <= middle) & (middle <= high), axis=1) & (areas > areas[j])
         rows = np.flatnonzero(may)
         for i in rows[np.argsort(areas[rows], kind="stable")].tolist():
-            if enclosed(contours[i], start[None])[0]:
+            if _most_enclosed(contours[i], places[None])[0]:
                 result[j] = i
                 break
     return result
+
+
+def _places(contour: Contour) -> Floats:
+    """Three points of a contour, between the ends of its arcs: others touch it there, if at all."""
+    at = _PLACES * len(contour.arcs)
+    arc = at.astype(np.int64)
+    return evaluate_each(contour.arcs[arc], contour.weights[arc], at - arc)
+
+
+def _most_enclosed(contour: Contour, places: Floats) -> Bools:
+    """Whether at least two of three points of each lie inside: (n, 3, 2) -> (n,).
+
+    One may be where the two touch, so that rounding decides: the third is asked if two disagree.
+    """
+    first, last = (enclosed(contour, places[:, k]) for k in (0, 2))
+    doubtful = np.flatnonzero(first != last)
+    if len(doubtful):
+        first[doubtful] = enclosed(contour, places[doubtful, 1])
+    return first
 
 
 def _inside(contour: Contour, parent: Contour | None) -> Contour:

@@ -27,6 +27,7 @@ from splinesdf.ground.limits import Limits, checked_limits, limits_in_use, using
 from splinesdf.ground.values import by_value
 from splinesdf.shapes import constructors, measures, moves
 from splinesdf.shapes.boundary import kept_loops, some_boundary
+from splinesdf.shapes.geometries import to_shapely
 from splinesdf.shapes.loops import Fill, fill_rule
 from splinesdf.shapes.repeats import drawn_once, repeats_note
 
@@ -201,6 +202,7 @@ class Shape:
     union = __or__ = moves.union
     intersection = __and__ = moves.intersection
     difference = __sub__ = moves.difference
+    to_shapely = to_shapely
 
     def __len__(self) -> int:
         return self.loop_count

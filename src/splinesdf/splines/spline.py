@@ -34,6 +34,7 @@ from splinesdf.splines.archive import (
     write_archive,
 )
 from splinesdf.splines.border import border_of, extend_lattice
+from splinesdf.splines.coefficients import coefficients
 from splinesdf.splines.finite_elements import to_skfem
 from splinesdf.splines.level_sets import contours
 from splinesdf.splines.nodes import values_at_nodes
@@ -311,6 +312,7 @@ class SplineSDF:
         """
         return quadratic_triangles(self.mesh, self.element, self.ordinates)
 
+    coefficients = coefficients
     to_skfem = to_skfem
     to_glsl = to_glsl
 

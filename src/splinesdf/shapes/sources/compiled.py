@@ -17,34 +17,21 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf.arclets.interpolation import DEGREE, NODES, SAMPLES, TO_CHECKS, TO_CONTROL
+from splinesdf.arclets.interpolation import NODES, TO_CONTROL
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import NOTHING, Bools, Floats, as_points, largest_coordinate
 from splinesdf.shapes.loops import check_count
+from splinesdf.shapes.sources.resolution import (
+    CORNER,
+    FIRST_INTERVALS,
+    SHORT,
+    agreement,
+    interpolate,
+    interval_parameters,
+    noise_parameters,
+    split,
+)
 
-# Agreement asked for, in units in the last place of the largest coordinate. Smaller: rounding in
-# the formula itself is chased in vain. Larger: error that the exact distance would inherit.
-_ULPS = 4.0
-# A formula may be noisier than that (sin(100*t) loses two digits to its argument). Its own noise
-# is measured and accepted up to this share of the size; above, the formula is refused as noise.
-_MOST_NOISE = 1e-11
-# Noise is measured on pieces of the curve this long, as a share of its range. Longer: they bend;
-# shorter: the samples in them fall together.
-_SHORT = 2.0**-26
-# Noise elsewhere may be larger than at 64 places. Less: rounding is chased in vain somewhere;
-# more: digits are given away.
-_NOISE_RESERVE = 2.0
-# Fewer might overlook a feature between the samples; more would cost simple curves more pieces.
-_FIRST_INTERVALS = 4
-# An error below this share of the size shrinks like width^8, so the number of parts that reach
-# the tolerance can be foretold; above it the curve is not resolved and is just halved.
-_FORESEEN = 1e-5
-_MOST_PARTS = 12
-# So many times the parts foretold. At 1 rounding pushes some over the tolerance and each is cut
-# in two: a circle takes 59 pieces instead of 36. More: every curve takes more.
-_FORESIGHT = 1.06
-# Pieces narrower than this share of the range have run into a corner.
-_CORNER = 2.0**-30
 # A curve that needs more than this is noise or oscillates without end.
 _MOST_PIECES = 20_000
 
@@ -90,13 +77,13 @@ def compile_curve(curve: Curve, *, scale: float = 0.0) -> list[Floats]:
         If the curve is not finite somewhere, or cannot be resolved (jump, infinite slope, noise).
     """
     tolerance, scale = _tolerance(curve, scale)
-    ends = np.linspace(curve.start, curve.stop, _FIRST_INTERVALS + 1)
+    ends = np.linspace(curve.start, curve.stop, FIRST_INTERVALS + 1)
     left, pieces = _refine(curve, ends, tolerance, scale)
     corners = _corners(left, curve)
     if len(corners):
         bounds = np.concatenate([[curve.start], corners, [curve.stop]])
         ends = np.unique(
-            np.concatenate([np.linspace(a, b, _FIRST_INTERVALS + 1) for a, b in pairwise(bounds)])
+            np.concatenate([np.linspace(a, b, FIRST_INTERVALS + 1) for a, b in pairwise(bounds)])
         )
         left, pieces = _refine(curve, ends, tolerance, scale)
     pieces = [pieces[i] for i in np.argsort(left[:, 0])]
@@ -107,19 +94,9 @@ def compile_curve(curve: Curve, *, scale: float = 0.0) -> list[Floats]:
 
 def _tolerance(curve: Curve, scale: float) -> tuple[float, float]:
     """The error to accept, and the largest coordinate, from samples all over the curve."""
-    # Irrational places, so that no sample falls on a corner at a simple fraction of the range.
-    places = (np.arange(64) + 0.5 * (math.sqrt(5.0) - 1.0)) / 64.0
-    width = curve.stop - curve.start
-    # So short that what an interpolant misses there is rounding and nothing else.
-    t = curve.start + width * (0.999 * places[:, None] + _SHORT * SAMPLES)
-    points = _evaluate(curve, t)
-    scale = max(scale, float(np.max(np.abs(points))))
-    bulge = points - points[:, :1]
-    miss = TO_CHECKS @ bulge[:, : DEGREE + 1] - bulge[:, DEGREE + 1 :]
-    # One sample of 64 may sit on a corner by chance; the second largest is noise all the same.
-    noise = _NOISE_RESERVE * float(np.sort(np.max(np.abs(miss), axis=(1, 2)))[-2])
-    ulp = float(np.finfo(np.float64).eps) * scale
-    return max(_ULPS * ulp, min(noise, _MOST_NOISE * scale)), scale
+    points = _evaluate(curve, noise_parameters(curve.start, curve.stop))
+    tolerance, largest = agreement(np.moveaxis(points, -1, 0).copy(), scale)
+    return float(tolerance), float(largest)
 
 
 def _evaluate(curve: Curve, t: Floats) -> Floats:
@@ -140,24 +117,13 @@ def _refine(
     done: list[Floats] = []
     pieces: list[Floats] = []
     while len(intervals):
-        left, right = intervals[:, :1], intervals[:, 1:]
-        t = left + (right - left) * SAMPLES
-        t[:, DEGREE] = intervals[:, 1]
-        points = _evaluate(curve, t)
-        first, last = points[:, :1], points[:, DEGREE : DEGREE + 1]
-        # Interpolating the difference to the chord keeps rounding in proportion to the bulge.
-        bulge = points - (first + (last - first) * SAMPLES[:, None])
-        straight = np.max(np.abs(bulge), axis=(1, 2)) <= tolerance
-        inner = np.arange(DEGREE + 1) / DEGREE
-        control = first + (last - first) * inner[:, None] + TO_CONTROL @ bulge[:, : DEGREE + 1]
-        control[:, 0], control[:, -1] = first[:, 0], last[:, 0]
-        miss = TO_CHECKS @ bulge[:, : DEGREE + 1] - bulge[:, DEGREE + 1 :]
-        error = np.max(np.abs(miss), axis=(1, 2))
+        points = _evaluate(curve, interval_parameters(intervals))
+        control, straight, error = interpolate(np.swapaxes(points, 1, 2).copy(), tolerance)
         good = straight | (error <= tolerance)
         done.append(intervals[good])
         pieces += [control[i, [0, -1]] if straight[i] else control[i] for i in np.flatnonzero(good)]
         _check_progress(intervals, good, len(pieces), narrowest)
-        intervals = _split(intervals[~good], error[~good], tolerance, scale)
+        intervals, _ = split(intervals[~good], error[~good], tolerance, scale)
     return np.concatenate(done), pieces
 
 
@@ -176,29 +142,14 @@ def _check_progress(intervals: Floats, good: Bools, count: int, narrowest: float
         )
 
 
-def _split(intervals: Floats, error: Floats, tolerance: float, scale: float) -> Floats:
-    """Each interval in as many equal parts as its error asks for."""
-    resolved = error < _FORESEEN * scale
-    times = np.where(resolved, error, 0.0) / max(tolerance, np.finfo(np.float64).tiny)
-    foreseen = np.ceil(_FORESIGHT * times ** (1.0 / (DEGREE + 1)))
-    parts = np.where(resolved, np.clip(foreseen, 2, _MOST_PARTS), 2).astype(int)
-    result = []
-    for count in np.unique(parts):
-        chosen = intervals[parts == count]
-        cuts = chosen[:, :1] + (chosen[:, 1:] - chosen[:, :1]) * (np.arange(count + 1) / count)
-        cuts[:, -1] = chosen[:, 1]
-        result.append(np.stack([cuts[:, :-1], cuts[:, 1:]], axis=-1).reshape(-1, 2))
-    return np.concatenate(result) if result else intervals
-
-
 def _corners(intervals: Floats, curve: Curve) -> Floats:
     """Where splitting ran down to very short intervals: one parameter for each such place."""
     width = curve.stop - curve.start
-    small = intervals[intervals[:, 1] - intervals[:, 0] < _CORNER * width]
+    small = intervals[intervals[:, 1] - intervals[:, 0] < CORNER * width]
     small = small[np.argsort(small[:, 0])]
     corners = []
     while len(small):
-        near = small[:, 0] - small[0, 0] < 1e3 * _CORNER * width
+        near = small[:, 0] - small[0, 0] < 1e3 * CORNER * width
         group, small = small[near], small[~near]
         widths = group[:, 1] - group[:, 0]
         finest = group[widths <= 2.0 * widths.min()]
@@ -209,7 +160,7 @@ def _corners(intervals: Floats, curve: Curve) -> Floats:
 
 def _meeting(curve: Curve, low: float, high: float) -> float:
     """Where the tangents before ``low`` and after ``high`` meet: the corner between them."""
-    reach = _SHORT * (curve.stop - curve.start)
+    reach = SHORT * (curve.stop - curve.start)
     t = np.array([max(low - reach, curve.start), low, high, min(high + reach, curve.stop)])
     points = _evaluate(curve, t)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -6,17 +6,17 @@ Straight arcs and parabolas are exact; others are compiled, good to a few units 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import accumulate, chain, pairwise
 
 import numpy as np
 
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError, OpenContourError
-from splinesdf.ground.arrays import Floats
-from splinesdf.shapes.sources.nurbs import nurbs_pieces
+from splinesdf.ground.arrays import Bools, Floats
+from splinesdf.shapes.sources.rational import rational_pieces
 
 # A middle point this near to the chord, as a share of the largest coordinate, is on it.
 _ROUNDING = 4.0 * 2.220446049250313e-16
-_KNOTS = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
 
 
 def contour_loops(contours: Iterable[Contour]) -> list[list[Floats]]:
@@ -43,27 +43,32 @@ def contour_loops(contours: Iterable[Contour]) -> list[list[Floats]]:
             f"expected contours of one distance, got {levels[0]:g} and {levels[-1]:g}: those of "
             "each are a shape of their own"
         )
-    return [
-        [
-            piece
-            for arc, weight in zip(contour.arcs, contour.weights, strict=True)
-            for piece in _pieces(arc, float(weight))
-        ]
-        for contour in given
+    counts = [len(contour.arcs) for contour in given]
+    pieces = _pieces(
+        np.concatenate([contour.arcs for contour in given]),
+        np.concatenate([contour.weights for contour in given]),
+    )
+    ends = [0, *accumulate(counts)]
+    return [list(chain(*pieces[first:last])) for first, last in pairwise(ends)]
+
+
+def _pieces(arcs: Floats, weights: Floats) -> list[list[Floats]]:
+    """The pieces of each arc: those that need compiling are compiled together."""
+    straight = _are_straight(arcs)
+    rational = np.flatnonzero(~straight & (weights != 1.0))
+    pieces = [
+        [arc[[0, 2]] if is_straight else arc]
+        for arc, is_straight in zip(arcs, straight, strict=True)
     ]
+    compiled = rational_pieces(arcs[rational], weights[rational])
+    for row, found in zip(rational.tolist(), compiled, strict=True):
+        pieces[row] = found
+    return pieces
 
 
-def _pieces(arc: Floats, weight: float) -> list[Floats]:
-    if _is_straight(arc):
-        return [arc[[0, 2]]]
-    if weight == 1.0:
-        return [arc]
-    return nurbs_pieces(arc, degree=2, knots=_KNOTS, weights=[1.0, weight, 1.0])
-
-
-def _is_straight(arc: Floats) -> bool:
-    """Whether the middle control point lies on the chord, to rounding, so that the arc does."""
-    chord, leg = arc[2] - arc[0], arc[1] - arc[0]
-    across = abs(chord[0] * leg[1] - chord[1] * leg[0])
-    rounding = _ROUNDING * float(np.abs(arc).max())
-    return bool(across <= rounding * np.hypot(*chord))
+def _are_straight(arcs: Floats) -> Bools:
+    """Whether the middle control points lie on the chords, to rounding, so that the arcs do."""
+    chord, leg = arcs[:, 2] - arcs[:, 0], arcs[:, 1] - arcs[:, 0]
+    across = np.abs(chord[:, 0] * leg[:, 1] - chord[:, 1] * leg[:, 0])
+    rounding = _ROUNDING * np.abs(arcs).max(axis=(1, 2))
+    return np.asarray(across <= rounding * np.hypot(*chord.T))
