@@ -393,10 +393,3 @@ def test_long_names_are_refused_in_a_line(run: Command) -> None:
         assert done.out == ""
         assert done.err.count("\n") == 1
         assert "File name too long" in done.err
-
-
-def test_a_file_is_not_written_twice(run: Command, tmp_path: Path) -> None:
-    done = run("fit", "gamma2", "--tolerance", "0.1", "-o", "a.npz", "-o", "./a.npz")
-    assert (done.status, done.out) == (2, "")
-    assert "'./a.npz' twice" in done.err
-    assert not list(tmp_path.iterdir())

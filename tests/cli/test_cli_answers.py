@@ -194,3 +194,10 @@ def test_a_shell_completes_commands_options_and_shapes(run: Command) -> None:
     assert set(completed("splinesdf ")) == {f"plain,{name}" for name in commands.commands}
     assert {"plain,gamma1", "plain,gamma2", "plain,gamma3"} < set(completed("splinesdf info ga"))
     assert "plain,--tolerance" in completed("splinesdf fit part --to")
+
+
+def test_a_file_is_not_written_twice(run: Command, tmp_path: Path) -> None:
+    done = run("fit", "gamma2", "--tolerance", "0.1", "-o", "a.npz", "-o", "./a.npz")
+    assert (done.status, done.out) == (2, "")
+    assert "'./a.npz' twice" in done.err
+    assert not list(tmp_path.glob("*.npz"))
