@@ -178,9 +178,9 @@ def answered() -> set[type]:
         for name, function in inspect.getmembers(kind, inspect.isfunction)
         if not name.startswith("_")
     ]
-    # Methods that hand over to a higher floor name its types, which only type checkers import.
-    above = {"Axes": object, "Contour": ss.Contour, "FitResult": ss.FitResult}
-    hints = [get_type_hints(function, localns=above).get("return") for function in functions]
+    # Some methods name types that only type checkers import: of a higher floor, or a library.
+    typed = {"Axes": object} | {name: getattr(ss, name) for name in ss.__all__}
+    hints = [get_type_hints(function, localns=typed).get("return") for function in functions]
     hints += [hint for kind in kinds for hint in get_type_hints(kind).values()]
     found = {kind for hint in hints for kind in named(hint)} | set(kinds)
     return {kind for kind in found if kind in RECORDS}
