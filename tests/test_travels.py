@@ -142,6 +142,7 @@ def examples() -> dict[type, Any]:
         dataclasses.replace(ss.atlas({"limaçon": shape}, size=8), kerning=(Kern("A", "V", -0.1),)),
         ss.offset(shape, [-0.02, 0.1], tolerance=1e-4),
         ss.Milling(feed=100.0),
+        ss.Progress("offset by 1", 1, 2),
         shape.joints,
         shape.kinds,
         shape.bends,

