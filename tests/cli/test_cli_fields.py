@@ -64,7 +64,8 @@ def test_info_of_formulas_and_of_sorted_json(run: Command, tmp_path: Path) -> No
         (["fit", "fit.json", "-o", "a.vtu"], "got a saved fit"),
         (["fit", "fit.json", "-o", "fit.json"], "saved fit"),
         (["info", "cut.json"], "damaged"),
-        (["query", "cut.json", "fit.json"], "damaged"),
+        (["query", "cut.json", "points.csv"], "damaged"),
+        (["query", "points.csv", "fit.json"], "give the points last"),
         (["info", "missing.json"], "does not exist"),
     ],
 )
@@ -75,6 +76,7 @@ def test_what_cannot_be_is_one_line(
     ss.interpolate(shape, (2, 2)).spline.save(tmp_path / "fit.json")
     whole = (tmp_path / "fit.json").read_bytes()
     (tmp_path / "cut.json").write_bytes(whole[:-100])
+    (tmp_path / "points.csv").write_text("0,0\n1,1\n")
     done = run(*arguments)
     assert (done.status, done.out) == (2, "")
     (line,) = (line for line in done.err.splitlines() if not line.startswith("tolerance "))
