@@ -82,7 +82,8 @@ def test_what_cannot_be_is_one_line(
     (line,) = (line for line in done.err.splitlines() if not line.startswith("tolerance "))
     assert line.startswith("splinesdf: ")
     assert says in line
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["cut.json", "fit.json", "points.csv"]
+    left = sorted(path.name for path in tmp_path.iterdir())
+    assert left == ["cut.json", "fit.json", "points.csv"]
     assert (tmp_path / "fit.json").read_bytes() == whole
 
 
