@@ -350,7 +350,7 @@ def test_plots_do_not_load_pyplot() -> None:
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.01234, "0.013"), (0.002, "0.002"), (1.001e-7, "1.1e-07"), (0.0, "0"), (0.0999, "0.1")],
+    [(0.01234, "0.0124"), (0.002, "0.002"), (1.001e-7, "1.01e-07"), (0.0, "0"), (0.09999, "0.1")],
 )
 def test_captions_round_up(value: float, text: str) -> None:
     assert plot.at_most(value) == text
