@@ -186,6 +186,16 @@ def test_without_its_libraries_the_command_line_names_its_extra(missing: str) ->
             ("query", "part", "fit.npz"),
             "expected a table of points, got a saved fit, 'fit.npz': give the points last",
         ),
+        (
+            ("query", "a fit.npz", "30, 2e1"),
+            "expected a table of points, got '30, 2e1': write them into a file, or "
+            "echo 30,2e1 | splinesdf query 'a fit.npz' -",
+        ),
+        (
+            ("texture", "part", "-o", "a.png"),
+            "expected --range, got none: width of the distances that are told apart, in the "
+            "shape's unit",
+        ),
     ],
 )
 def test_slips_are_told_with_the_way_on(

@@ -63,6 +63,9 @@ def _in_words(error: click.ClickException) -> str:
     Its "2mm is not a valid float" becomes what was expected and what came.
     """
     message = error.format_message()
+    if isinstance(error, click.MissingParameter) and isinstance(error.param, click.Option):
+        meant = (error.param.help or "").rstrip(".")
+        return f"expected {error.param.opts[-1]}, got none: {meant[:1].lower()}{meant[1:]}"
     if isinstance(error, click.BadParameter) and error.param is not None:
         got = re.match(r"('.*') is not a valid (?:float|integer)", error.message, re.DOTALL)
         if got:
