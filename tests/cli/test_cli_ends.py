@@ -68,6 +68,13 @@ def test_a_fit_that_is_deleted_meanwhile_is_described(
     assert re.search(r"size\s+no longer there", done.out)
 
 
+def test_a_name_that_no_system_takes_is_refused_in_a_line(run: Command) -> None:
+    """Of a .json file it is first asked whether it is a fit, which cannot be told either."""
+    done = run("info", "a" * 300 + ".json")
+    assert (done.status, done.out) == (2, "")
+    assert re.fullmatch(r"splinesdf: a+\.\.\.: .*(too long|does not exist).*\n", done.err)
+
+
 def test_a_fit_of_unknown_origin_is_described(run: Command, tmp_path: Path) -> None:
     spline = ss.fit(gamma("gamma1"), tolerance=0.1).spline
     ss.SplineSDF(spline.mesh, spline.ordinates).save(tmp_path / "fit.npz")

@@ -15,7 +15,9 @@ STAR = "150,0\n180,90\n100,30\n200,30\n120,90\n"
 def test_an_outline_that_asks_for_too_much_is_refused_not_left_out(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text(f"{SQUARE}\n{STAR}")
     limits = ss.Limits(crossings=4)
-    with pytest.raises(ss.InputError, match=r"up to 4 crossings .*limits=Limits\(crossings=\.\.\.\)"):
+    with pytest.raises(
+        ss.InputError, match=r"up to 4 crossings .*limits=Limits\(crossings=\.\.\.\)"
+    ):
         ss.read_all(tmp_path / "a.csv", fill="nonzero", limits=limits)
     shapes = ss.read_all(tmp_path / "a.csv", fill="nonzero", limits=ss.Limits(crossings=5))
     assert [shape.name for shape in shapes] == ["polygon 1", "polygon 2"]

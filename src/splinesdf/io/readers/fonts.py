@@ -19,7 +19,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from splinesdf.errors import InputError, MissingExtraError
-from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.fonts_packed import check_unpacked
 from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source, printable
