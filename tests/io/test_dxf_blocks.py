@@ -177,7 +177,7 @@ def test_blocks_inserted_nowhere_are_named(
 
 
 def test_entities_that_draw_others_are_those_wherever_they_are_inserted(tmp_path: Path) -> None:
-    """A double line around 10 x 8, one of them on it, is a frame; a dimension is arrows and lines."""
+    """A double line around 10 x 8, one of them on it, is a frame; a dimension is arrows."""
     document = ezdxf.new(units=4, setup=True)
     block = document.blocks.new("frame")
     block.add_mline([(0, 0), (10, 0), (10, 8), (0, 8)], close=True)

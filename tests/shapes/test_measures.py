@@ -106,17 +106,9 @@ def test_arcs_that_nearly_stand_still_are_as_long_as_they_are(
 
 
 def test_no_part_is_lost_where_halving_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lowered; the bend is at none of the halves, so that there are parts left."""
-    corners, part = np.array(NEAR_CUSPS[1]), []
-    for _ in range(4):
-        part.append(corners[0])
-        corners = 0.3 * corners[:-1] + 0.7 * corners[1:]
-    shape = ss.Shape.from_pieces([[part]], close=True)
-    length = shape.length
-    monkeypatch.setattr(measures, "_HALVINGS", 2)
-    rough = measures.length(shape.boundary)
-    assert rough == pytest.approx(length, rel=1e-3)
-    assert rough != length
+    shape, length = near_cusp(NEAR_CUSPS[1])
+    monkeypatch.setattr(measures, "_HALVINGS", 1)
+    assert shape.length == pytest.approx(length, rel=1e-6)
 
 
 # Whole numbers: what Shapely takes for valid by 1e-133 is a slit to us.
