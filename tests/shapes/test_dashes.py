@@ -290,6 +290,15 @@ def test_a_crumb_at_a_corner_stays_where_it_is(behind: bool) -> None:
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-15)
 
 
+def test_halving_ends_where_rounding_would_never_let_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dashes_module, "_EXACT", -1.0)
+    monkeypatch.setattr(dashes_module, "_MOST_HALVINGS", 4)
+    path = dashes_module._measured([np.array([(0.0, 0.0), (3.0, 4.0)])])
+    assert path is not None
+    assert len(path.low) == 2**5
+    assert path.length == pytest.approx(5.0, rel=1e-14)
+
+
 def test_where_halving_and_steps_end_dashes_are_near_what_is_asked(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -108,7 +108,7 @@ def test_arcs_that_nearly_stand_still_are_as_long_as_they_are(
 def test_no_part_is_lost_where_halving_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     shape, length = near_cusp(NEAR_CUSPS[1])
     monkeypatch.setattr(measures, "_HALVINGS", 1)
-    assert shape.length == pytest.approx(length, rel=1e-6)
+    assert shape.length == pytest.approx(length, rel=1e-9)
 
 
 # Whole numbers: what Shapely takes for valid by 1e-133 is a slit to us.
