@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         signed_distance_grid,
     )
     from splinesdf.errors import (
+        AxisIncomplete,
         InputError,
         MissingExtraError,
         OpenContourError,
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
     from splinesdf.io.input import example, read, read_all
     from splinesdf.io.output import write
     from splinesdf.io.writers.options import Milling
+    from splinesdf.medial.axis import MedialAxis
+    from splinesdf.medial.edge import AxisEdge
+    from splinesdf.medial.tracing import medial_axis
     from splinesdf.meshes.lattice import DistanceGrid
     from splinesdf.offsets.offset import offset
     from splinesdf.rasters.atlas import atlas
@@ -44,11 +48,14 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = [
     "Atlas",
+    "AxisEdge",
+    "AxisIncomplete",
     "Contour",
     "DistanceGrid",
     "FitResult",
     "InputError",
     "Limits",
+    "MedialAxis",
     "Milling",
     "MissingExtraError",
     "OpenContourError",
@@ -68,6 +75,7 @@ __all__ = [
     "from_level_set",
     "interpolate",
     "load",
+    "medial_axis",
     "offset",
     "plot",
     "project",
@@ -92,6 +100,7 @@ _MODULES = {
         "signed_distance_grid",
     ),
     "errors": (
+        "AxisIncomplete",
         "InputError",
         "MissingExtraError",
         "OpenContourError",
@@ -112,6 +121,9 @@ _MODULES = {
     ),
     "io.output": ("write",),
     "io.writers.options": ("Milling",),
+    "medial.axis": ("MedialAxis",),
+    "medial.edge": ("AxisEdge",),
+    "medial.tracing": ("medial_axis",),
     "meshes.lattice": ("DistanceGrid",),
     "offsets.offset": ("offset",),
     "rasters.atlas": ("atlas",),
