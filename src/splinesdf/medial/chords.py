@@ -17,8 +17,8 @@ from splinesdf.shapes.shape import Shape
 # Feet nearer than this share of the size are one place. Larger: junctions that near are one;
 # smaller: rounding in feet puts them in the wrong order.
 SNAP = 2e-12
-# Disks smaller than this share of the size are not told from a corner.
-_POINT = 1e-10
+# Disks smaller than this share of the size are rounding.
+_POINT = 1e-14
 # Where an element is looked at first: not its middle, where disks of symmetric shapes coincide.
 _INSIDE = 0.4142
 # Arclets shorter than this share of the size, as next to cusps, are looked at where they start.

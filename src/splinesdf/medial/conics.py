@@ -51,8 +51,8 @@ def controls(start: Floats, end: Floats, leaving: Floats, arriving: Floats) -> t
     parallel = det <= _PARALLEL * a * c
     with np.errstate(divide="ignore", invalid="ignore"):
         s, t = (e * c - f * b) / det, (f * a - e * b) / det
+        meeting = 0.5 * (start + s[:, None] * leaving + end - t[:, None] * arriving)
     middle = 0.5 * (start + end)
-    meeting = 0.5 * (start + s[:, None] * leaving + end - t[:, None] * arriving)
     result = np.where(parallel[:, None], middle, meeting)
     chord = np.sqrt(np.sum(apart * apart, axis=1))
     straight = np.sqrt(np.sum((result - middle) ** 2, axis=1)) <= _FLAT * chord

@@ -34,6 +34,8 @@ _SHORT = 0.3
 _HALVINGS = 40
 # Arcs of all edges. More: memory; a tolerance that takes more is below what anybody has a use for.
 _MOST = 400_000
+# Exact arcs go through the disks between their ends, as far as the nearest point of an arc is found.
+_ON = 1e-7
 # Weights of fitted arcs: beyond, an arc is halved.
 _LIGHT, _HEAVY = 0.05, 20.0
 
@@ -77,6 +79,8 @@ def curves_of(region: Region, chains: Chains, tolerance: float) -> Curves:
         weight, heavy = _exact_weights(region, start, end, control, element)
         good = (good | lines) & heavy
         good &= _checked(region, start, end, control, weight, element)
+        arcs = np.stack([start, control, end], axis=1)
+        good &= _through(pool, arcs, weight, first, last) <= _ON * region.size
         done.append(
             (
                 np.column_stack([first, last])[good],
@@ -150,6 +154,11 @@ def _spans(region: Region, chains: Chains) -> _Spans:
     new[1:] = (ahead[1:] != ahead[:-1]).any(axis=1) | (segment[1:] != segment[:-1] + 1)
     new |= mixed
     new[1:] |= mixed[:-1]
+    # A closed chain of one pair of sites is cut in three: an arc that comes back is none.
+    for j in np.flatnonzero(chains.ends[:, 0] == chains.ends[:, 1]).tolist():
+        low, high = np.searchsorted(segment, chains.first[j : j + 2] - [0, 1])
+        if high - low > 2:
+            new[[low + (high - low) // 3, low + 2 * (high - low) // 3]] = True
     first = segment[new]
     last = segment[np.append(np.flatnonzero(new)[1:] - 1, len(segment) - 1)] + 1
     element = chains.ahead[first]
@@ -180,6 +189,19 @@ def _checked(
         for k in (0, 1):
             off = np.maximum(off, off_sites(region.walk, element[:, k], disks))
     return np.asarray(off <= NEAR * region.size)
+
+
+def _through(pool: Pool, arcs: Floats, weight: Floats, first: Ints, last: Ints) -> Floats:
+    """How far arcs are off the disks of a chain that are between their ends: (n,)."""
+    count = np.maximum(last - first - 1, 0)
+    row = np.repeat(np.arange(len(first)), count)
+    off = np.zeros(len(first))
+    if len(row):
+        node = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + first[row] + 1
+        span = pool.order[last] - pool.order[first]
+        share = (pool.order[node] - pool.order[first[row]]) / np.where(span > 0.0, span, 1.0)[row]
+        np.maximum.at(off, row, off_arc(arcs[row], weight[row], pool.disk[node], share))
+    return off
 
 
 def _fitted(

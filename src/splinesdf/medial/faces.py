@@ -23,7 +23,7 @@ from splinesdf.medial.chords import (
     together,
     without_doubles,
 )
-from splinesdf.medial.dividing import Part, divided
+from splinesdf.medial.dividing import Face, Part, divided
 from splinesdf.medial.feet import points_and_normals
 from splinesdf.medial.tables import WHOLE, Disks, Leaves
 
@@ -35,8 +35,10 @@ _ROUNDS = 40
 _MOST, _BESIDE = 40, 4000
 # Points of an arc at which is measured how far it is from a disk.
 _LOOKED = 9
+# Rounds without a new chord after which an axis is given up.
+_STUCK = 2
 # Faces are given up for one vertex, where their disks are nearly one, from this round on.
-_PATIENT = 3
+_PATIENT = 1
 
 
 class Vertex(NamedTuple):
@@ -61,15 +63,16 @@ def traced(region: Region, leaves: Leaves, first: Disks, spread: float) -> Look:
     """
     chords = without_doubles(region, first, leaves)
     most = _MOST * len(region.walk.element) + _BESIDE
-    look = Look(region, leaves, chords, spread)
+    look, stuck = Look(region, leaves, chords, spread), 0
     for round_ in range(_ROUNDS):
-        more = look.resolve(round_)
-        if more is None or len(chords.radius) > most:
-            break
+        more = look.resolve(round_, stuck > 0)
+        if more is None or len(chords.radius) > most or stuck > _STUCK:
+            return look
+        count = len(chords.radius)
         chords = without_doubles(region, together(chords, more), leaves)
         look = Look(region, leaves, chords, spread)
-    else:
-        look.resolve(_ROUNDS)
+        stuck = stuck + 1 if len(chords.radius) == count else 0
+    look.resolve(_ROUNDS, True)
     return look
 
 
@@ -138,7 +141,7 @@ class Look:
             else:
                 self.bare.append(j)
 
-    def resolve(self, round_: int) -> Disks | None:
+    def resolve(self, round_: int, stuck: bool) -> Disks | None:
         """Find vertices; chords that divide the faces that are not clear, None if all are."""
         sizes = np.diff(self.map.first)
         count = np.zeros(len(sizes), dtype=np.int64)
@@ -157,8 +160,9 @@ class Look:
         for f, vertex in met.vertices.items():
             self.vertices[f] = Vertex(*vertex, -1, 0.0)
         more = [met.chords] if len(met.chords.radius) else []
-        open_ = [f for f in todo if f not in self.vertices and f not in met.divided]
-        patient = round_ < _PATIENT
+        divided_ = set[int]() if stuck else met.divided
+        open_ = [f for f in todo if f not in self.vertices and f not in divided_]
+        patient = round_ < _PATIENT and not stuck
         self.unclear = [f for f in open_ if patient or not self._collapsed(f)]
         places = [place for f in self.unclear for place in self._middles(f, round_)]
         for j in self.bare:
@@ -190,8 +194,8 @@ class Look:
         for i in np.flatnonzero(spread.max(axis=1) <= self.near).tolist():
             self.vertices[int(faces[i])] = Vertex(mean[i, :2], float(mean[i, 2]), -1, 0.0)
 
-    def _guesses(self, sides: dict[int, list[Part]]) -> dict[int, tuple[list[Part], bool, Floats]]:
-        """Faces with three sides or more: their arcs, whether they are plain, and some disk."""
+    def _guesses(self, sides: dict[int, list[Part]]) -> dict[int, Face]:
+        """Faces with three sides or more."""
         result = {}
         for f, parts in sides.items():
             if len(parts) < 3:
@@ -201,7 +205,19 @@ class Look:
             guess = np.append(
                 self.chords.center[some].mean(axis=0), self.chords.radius[some].mean()
             )
-            result[f] = parts, not any(self.inside.get(k) for k in ends), guess
+            inside = [leaf for k in ends for leaf in self.inside.get(k, ())]
+            disks = [
+                np.append(self.leaves.center[leaf], self.leaves.radius[leaf])
+                for leaf in inside
+                if self.leaves.radius[leaf] > 0.0
+            ]
+            round_ends = {
+                place
+                for leaf in inside
+                if self.leaves.radius[leaf] > 0.0
+                for place in (self.high[leaf], self._end(*self.low[leaf]))
+            }
+            result[f] = Face(parts, not inside, guess, disks, round_ends)
         return result
 
     def _parts_of(self, face: int) -> list[Part]:

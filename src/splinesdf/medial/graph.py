@@ -221,7 +221,10 @@ def _feet_of_vertices(
             right = int(row[place - 1 if at_end else place + 1])
             # Right feet walk forward, left ones backward.
             ahead, back = (right, right ^ 1) if at_end else (right ^ 1, right)
-            both = [traced.parts(ahead)[0], traced.parts(int(before[back]))[-1]]
+            both = [
+                _on_site(traced, traced.parts(ahead)[0], True),
+                _on_site(traced, traced.parts(int(before[back]))[-1], False),
+            ]
             table += both if at_end else both[::-1]
             targets += [(place, 0), (place, 1)]
     if not table:
@@ -237,3 +240,23 @@ def _feet_of_vertices(
     which, sides = np.array(targets).T
     feet(traced.region.walk, arcs, np.ascontiguousarray(disk[which, :2]), met)
     places[which, sides], params[which, sides] = met.element, met.at
+
+
+def _on_site(traced: Look, part: Part, forward: bool) -> Part:
+    """An arc from a chord to a vertex, as far as it is on the site that it is on at the chord.
+
+    Where a site ends there is a chord, but for circles whose center is the vertex.
+    """
+    site, loops = traced.region.walk.element[:, 2], traced.region.loops
+    e, u, end, v = part
+    if e == end:
+        return part
+    if forward:
+        at = e
+        while at != end and site[loops.after[at]] == site[e]:
+            at = int(loops.after[at])
+        return (e, u, at, v if at == end else 1.0)
+    at = end
+    while at != e and site[loops.before[at]] == site[end]:
+        at = int(loops.before[at])
+    return (at, u if at == e else 0.0, end, v)

@@ -169,6 +169,10 @@ def _counted(look: Look, chains: Chains, corners: Corners) -> bool:
     open_ = chains.ends[:, 0] >= 0
     if (open_ != (chains.ends[:, 1] >= 0)).any():
         return False
+    # A closed chain of one or two disks says nothing about what is between.
+    closed = chains.ends[:, 0] < 0
+    if (np.diff(chains.first)[closed] < 4).any():
+        return False
     # Components less loops, of the graph.
     return bool(len(corners.radius) - np.count_nonzero(open_) == look.region.loops.euler)
 

@@ -20,6 +20,9 @@ _ONE_LINE = 1e-13
 # A speed below this share of the arclet's largest is that of a cusp: the curvature there is taken
 # from higher derivatives.
 _STANDS = 1e-9
+# Curvature that grows by this factor between a hundredth and a ten thousandth of an arclet from
+# its end is infinite there: it grows like the inverse of the parameter, or faster.
+_GROWS = 5.0
 
 
 def walk_of(shape: Shape) -> tuple[Walk, Loops]:
@@ -160,14 +163,17 @@ def curvature_at(boundary: Arclets, arclet: Ints, t: Floats) -> Floats:
     largest = np.abs(boundary.power[arclet, 1:]).max(axis=(1, 2), initial=0.0)
     still = np.flatnonzero(speed <= _STANDS * largest)
     if len(still):
-        # Just beside it: the sign is that of the curve, and what is large is infinite.
-        aside = np.where(t[still] > 0.5, 1.0 - 1e-4, 1e-4)
-        first, second = derivatives_at(boundary, arclet[still], aside)
-        beside = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            beside = beside / np.hypot(first[:, 0], first[:, 1]) ** 3
-        large = np.abs(beside) * np.hypot(*(boundary.end - boundary.start)[arclet[still]].T) > 1e2
-        result[still] = np.where(large, np.copysign(np.inf, beside), 0.0)
+        # Beside it: a curvature that grows toward the place is infinite there.
+        values = []
+        for aside in (1e-2, 1e-4):
+            at = np.where(t[still] > 0.5, 1.0 - aside, aside)
+            first, second = derivatives_at(boundary, arclet[still], at)
+            beside = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                values.append(beside / np.hypot(first[:, 0], first[:, 1]) ** 3)
+        far, near = values
+        grows = np.abs(near) > _GROWS * np.abs(far)
+        result[still] = np.where(grows, np.copysign(np.inf, near), np.where(near == near, near, 0))
     return np.asarray(result)
 
 
