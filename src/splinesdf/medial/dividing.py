@@ -18,6 +18,8 @@ from splinesdf.medial.tables import Arcs, Disks, Met
 Part = tuple[int, float, int, float]
 # Rounds of dividing. A face of n sides has at most n - 2 vertices; most have one or two.
 _ROUNDS = 200
+# Disks smaller than this share of the size are not found where they touch an end of an arc.
+_SMALL = 1e-5
 
 
 class Face(NamedTuple):
@@ -74,6 +76,10 @@ def divided(
             touched = [k for k in range(count) if abs(float(met.distance[a + k]) - r) <= near]
             places = [(int(met.element[a + k]), float(met.at[a + k])) for k in touched]
             if met.chosen[i, 0] >= 0 and not round_ends.isdisjoint(places):
+                continue
+            # So small a disk touches within rounding where it is not tangent: in an end of an arc.
+            ends = {place for part in parts for place in (part[:2], part[2:])}
+            if r < _SMALL * region.size and not ends.isdisjoint(places):
                 continue
             split.add(f)
             guess = np.append(center, r)
