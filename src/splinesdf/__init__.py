@@ -33,6 +33,13 @@ if TYPE_CHECKING:
     from splinesdf.io.writers.options import Milling
     from splinesdf.medial.axis import MedialAxis
     from splinesdf.medial.edge import AxisEdge
+    from splinesdf.medial.thickness import (
+        MaximalDisks,
+        Narrow,
+        local_thickness,
+        maximal_disk,
+        thickness,
+    )
     from splinesdf.medial.tracing import medial_axis
     from splinesdf.meshes.lattice import DistanceGrid
     from splinesdf.offsets.offset import offset
@@ -55,9 +62,11 @@ __all__ = [
     "FitResult",
     "InputError",
     "Limits",
+    "MaximalDisks",
     "MedialAxis",
     "Milling",
     "MissingExtraError",
+    "Narrow",
     "OpenContourError",
     "Progress",
     "Projection",
@@ -75,6 +84,8 @@ __all__ = [
     "from_level_set",
     "interpolate",
     "load",
+    "local_thickness",
+    "maximal_disk",
     "medial_axis",
     "offset",
     "plot",
@@ -84,6 +95,7 @@ __all__ = [
     "signed_distance",
     "signed_distance_grid",
     "texture",
+    "thickness",
     "write",
 ]
 
@@ -123,6 +135,13 @@ _MODULES = {
     "io.writers.options": ("Milling",),
     "medial.axis": ("MedialAxis",),
     "medial.edge": ("AxisEdge",),
+    "medial.thickness": (
+        "MaximalDisks",
+        "Narrow",
+        "local_thickness",
+        "maximal_disk",
+        "thickness",
+    ),
     "medial.tracing": ("medial_axis",),
     "meshes.lattice": ("DistanceGrid",),
     "offsets.offset": ("offset",),

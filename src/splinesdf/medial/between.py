@@ -55,7 +55,8 @@ def with_middles(region: Region, pool: Pool, five: Ints) -> tuple[Pool, Ints, Bo
         rows = np.flatnonzero((five[:, target] < 0) & (five[:, before] >= 0) & ~lost)
         if not len(rows):
             continue
-        pool, good = _halfway(region, pool, five[rows, before], five[rows, behind])
+        half = np.full(len(rows), 0.5)
+        pool, good = between(region, pool, five[rows, before], five[rows, behind], half)
         count = len(pool.order)
         five[rows, target] = np.arange(count - len(rows), count)
         lost[rows[~good]] = True
@@ -63,15 +64,19 @@ def with_middles(region: Region, pool: Pool, five: Ints) -> tuple[Pool, Ints, Bo
     return pool, five, lost
 
 
-def _halfway(region: Region, pool: Pool, first: Ints, last: Ints) -> tuple[Pool, Bools]:
-    """Disks about halfway between others, and which of them were found."""
+def between(
+    region: Region, pool: Pool, first: Ints, last: Ints, share: Floats
+) -> tuple[Pool, Bools]:
+    """Disks at a share of the way between others, by their feet, and which of them were found."""
     right_low, right_length = _ordered(region, pool, first, last, 0)
     left_low, left_length = _ordered(region, pool, first, last, 1)
     on_left = left_length > right_length
     start = np.where(on_left, left_low, right_low)
     length = np.where(on_left, left_length, right_length)
     loop = region.loops.loop[pool.element[first, on_left.astype(np.int64)]]
-    element, at = _place(region, start + 0.5 * length, loop)
+    # The left foot walks backward.
+    way = np.where(on_left, 1.0 - share, share)
+    element, at = _place(region, start + way * length, loop)
     found, good = disks_at(region, element, at)
     # The second foot must be on the other side, between those of the neighbors.
     other_low = np.where(on_left, right_low, left_low)
@@ -97,10 +102,10 @@ def _halfway(region: Region, pool: Pool, first: Ints, last: Ints) -> tuple[Pool,
     slope = slopes(normal)
     slope = np.where(np.isnan(slope), 0.0, slope)
     good &= np.any(slope != 0.0, axis=1)
-    share = _advance(region, pool, first, right, right_at, 0)
-    share += _advance(region, pool, first, left, left_at, 1)
+    walked = _advance(region, pool, first, right, right_at, 0)
+    walked += _advance(region, pool, first, left, left_at, 1)
     low, high = pool.order[first], pool.order[last]
-    middle = np.clip(low + share, low, high)
+    middle = np.clip(low + walked, low, high)
     joined = Pool(
         np.concatenate([pool.disk, disk]),
         np.concatenate([pool.element, np.column_stack([right, left])]),

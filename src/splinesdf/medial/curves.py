@@ -34,7 +34,7 @@ _SHORT = 0.3
 _HALVINGS = 40
 # Arcs of all edges. More: memory; a tolerance that takes more is below what anybody has a use for.
 _MOST = 400_000
-# Exact arcs go through the disks between their ends, as far as the nearest point of an arc is found.
+# Exact arcs go through the disks between their ends, as near as nearest points are found.
 _ON = 1e-7
 # Weights of fitted arcs: beyond, an arc is halved.
 _LIGHT, _HEAVY = 0.05, 20.0
@@ -65,7 +65,7 @@ def curves_of(region: Region, chains: Chains, tolerance: float) -> Curves:
     """Arcs for all chains."""
     if not len(chains.ends):
         return _nothing()
-    pool = pool_of(region, chains, _slopes(chains))
+    pool = pool_of(region, chains, slopes_of(chains))
     spans = _spans(region, chains)
     done: list[tuple[Ints, Floats, Floats, Bools]] = []  # nodes, controls, weights, exact
     exact = spans.exact
@@ -129,7 +129,7 @@ def _nothing() -> Curves:
     return Curves(none, np.empty((0, 3, 3)), np.empty(0), feet, none > 0, 0.0, 0)
 
 
-def _slopes(chains: Chains) -> Floats:
+def slopes_of(chains: Chains) -> Floats:
     """Directions at all nodes; at an end in a maximum of curvature, along the normal."""
     nodes = chains.nodes
     result = slopes(nodes.normal)

@@ -40,9 +40,7 @@ class Divided(NamedTuple):
     divided: set[int]  # faces that chords divide
 
 
-def divided(
-    region: Region, near: float, faces: dict[int, Face]
-) -> Divided:
+def divided(region: Region, near: float, faces: dict[int, Face]) -> Divided:
     """Find the disks that touch three arcs of faces or more.
 
     Parameters

@@ -112,11 +112,12 @@ def medial_axis(
     else:
         found = _outside(shape, tolerance, height, domain)
     if not found.complete:
-        raise AxisIncomplete(_why(shape), found)
+        raise AxisIncomplete(why(shape), found)
     return found.pruned(height, corners=corners) if height > 0.0 or not corners else found
 
 
-def _why(shape: Shape) -> str:
+def why(shape: Shape) -> str:
+    """What to say of an axis that is not complete."""
     name = f" of {shape.name}" if shape.name else ""
     return (
         f"the medial axis{name} could not be completed: the count of ends and loops does not hold, "
@@ -126,6 +127,12 @@ def _why(shape: Shape) -> str:
 
 def _outside(shape: Shape, tolerance: float, height: float, domain: Box | None) -> MedialAxis:
     """The axis of what a shape leaves of a domain, less what belongs to the domain's border."""
+    rest, box = around(shape, domain)
+    return _axis_of(rest, tolerance, height, np.array(box))
+
+
+def around(shape: Shape, domain: Box | None) -> tuple[Shape, Box]:
+    """What a shape leaves of a domain, and the domain: its box grown by its size unless given."""
     xmin, ymin, xmax, ymax = shape.box
     margin = shape.size
     box = (
@@ -139,20 +146,34 @@ def _outside(shape: Shape, tolerance: float, height: float, domain: Box | None) 
         )
     frame = Shape.rectangle(*box)
     rest = replace(frame, y_down=shape.y_down, limits=shape.limits).difference(shape)
-    return _axis_of(replace(rest, name=shape.name), tolerance, height, np.array(box))
+    return replace(rest, name=shape.name), box
+
+
+def inside_axis(shape: Shape, tolerance: float) -> MedialAxis:
+    """The axis of the inside, not pruned, perhaps incomplete."""
+    return _axis_of(shape, tolerance, tolerance, None)
 
 
 def _axis_of(shape: Shape, tolerance: float, height: float, frame: Floats | None) -> MedialAxis:
     """The axis of the inside of a shape, not pruned; without the disks that touch a frame."""
+    look, corners, chains = graph_of(shape, height)
+    curves = curves_of(look.region, chains, tolerance)
+    complete = is_complete(look, corners, chains) and curves.failed == 0
+    return _assembled(look, corners, chains, curves, tolerance, complete, frame)
+
+
+def graph_of(shape: Shape, height: float) -> tuple[Look, Corners, Chains]:
+    """Faces, vertices and chains of disks of the inside of a shape."""
     region, leaves = leaves_in(shape)
     spread = _SPREAD * height if height > 0.0 else _NO_SPREAD * region.size
     look = traced(region, leaves, chords_at(region, *seeds(region)), spread)
     corners = corners_of(look)
-    chains = chains_of(look, corners)
-    curves = curves_of(region, chains, tolerance)
-    complete = _counted(look, chains, corners) and curves.failed == 0
-    complete = complete and _checked(region, corners, curves, chains)
-    return _assembled(look, corners, chains, curves, tolerance, complete, frame)
+    return look, corners, chains_of(look, corners)
+
+
+def is_complete(look: Look, corners: Corners, chains: Chains) -> bool:
+    """Whether the count holds, and all disks are empty."""
+    return _counted(look, chains, corners) and _checked(look.region, corners, chains)
 
 
 def leaves_in(shape: Shape) -> tuple[Region, Leaves]:
@@ -177,7 +198,7 @@ def _counted(look: Look, chains: Chains, corners: Corners) -> bool:
     return bool(len(corners.radius) - np.count_nonzero(open_) == look.region.loops.euler)
 
 
-def _checked(region: Region, corners: Corners, curves: Curves, chains: Chains) -> bool:
+def _checked(region: Region, corners: Corners, chains: Chains) -> bool:
     """Whether disks are empty and touch the boundary, at all vertices and ends of arcs."""
     from splinesdf.medial.kernels.disks import distances
 
@@ -218,7 +239,7 @@ def _assembled(
     number = np.arange(len(kinds))
     chosen: Bools = np.ones(len(chains.ends), dtype=np.bool_)
     if frame is not None:
-        chosen, number, kinds = _without_frame(region, chains, kinds, frame - np.tile(origin, 2))
+        chosen, number, kinds = without_frame(region, chains, kinds, frame - np.tile(origin, 2))
     edges = []
     for j in np.flatnonzero(chosen).tolist():
         a, b = int(bounds[j]), int(bounds[j + 1])
@@ -246,7 +267,7 @@ def _assembled(
     )
 
 
-def _without_frame(
+def without_frame(
     region: Region, chains: Chains, kinds: list[str], frame: Floats
 ) -> tuple[Bools, Ints, list[str]]:
     """Which edges have no foot on a frame; the new numbers of vertices, -1 for none; kinds."""
