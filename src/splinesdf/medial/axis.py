@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError, MissingExtraError
-from splinesdf.ground.arrays import Floats, Ints, finite
+from splinesdf.ground.arrays import Floats, Ints, Page, finite
 from splinesdf.ground.brief import brief, counted
 from splinesdf.ground.values import by_value
 from splinesdf.medial.edge import AxisEdge
@@ -39,7 +40,7 @@ class MedialAxis:
         Whether the count proves that nothing is missing, see `medial_axis`.
     pruned_below : float
         Branches lower than this are left out.
-    name : str
+    name, y_down, unit, page : str, bool, float, tuple
         The shape's.
 
     Examples
@@ -63,6 +64,9 @@ class MedialAxis:
     complete: bool
     pruned_below: float = 0.0
     name: str = ""
+    y_down: bool = False
+    unit: float | None = None
+    page: Page | None = None
 
     def __repr__(self) -> str:
         vertices = f"{len(self.radius):,} {'vertex' if len(self.radius) == 1 else 'vertices'}"
@@ -115,6 +119,29 @@ class MedialAxis:
             edges=graph.edges,
             pruned_below=max(self.pruned_below, height),
         )
+
+    def contours(self) -> list[Contour]:
+        """The edges as open contours, without their radii, for `splinesdf.write` and pictures.
+
+        Examples
+        --------
+        >>> import splinesdf as ss
+        >>> axis = ss.medial_axis(ss.Shape.rectangle(0, 0, 4, 2))
+        >>> axis.contours()[0].closed, len(axis.contours())
+        (False, 5)
+        """
+        return [
+            Contour(
+                edge.arcs[..., :2],
+                edge.weights,
+                closed=edge.start < 0,
+                y_down=self.y_down,
+                unit=self.unit,
+                page=self.page,
+                tolerance=self.tolerance,
+            )
+            for edge in self.edges
+        ]
 
     def longest_path(self) -> list[AxisEdge]:
         """The edges of the longest path between two free ends, each from where the last one ended.

@@ -159,6 +159,7 @@ def _narrow(region: Region, pool: Pool, chains: Chains, chosen: Bools) -> tuple[
     level = np.where(np.abs(slope) <= _LEVEL, 0, np.sign(slope)).astype(np.int64)
     # At ends in corners and in maxima of curvature the radius is least, but no wall is there.
     rows: list[int] = []
+    level_rows: list[tuple[int, int]] = []
     low: list[int] = []
     high: list[int] = []
     for j in np.flatnonzero(chosen).tolist():
@@ -168,7 +169,7 @@ def _narrow(region: Region, pool: Pool, chains: Chains, chosen: Bools) -> tuple[
             nodes = nodes[:-1]
             uneven = np.flatnonzero(level[nodes])
             if not len(uneven):
-                rows.append(int(nodes[len(nodes) // 2]))
+                rows.append(int(nodes[0]))
                 continue
             nodes = np.roll(nodes, -int(uneven[0]))
             nodes = np.append(nodes, nodes[0])
@@ -182,20 +183,23 @@ def _narrow(region: Region, pool: Pool, chains: Chains, chosen: Bools) -> tuple[
             rises = end == len(signs) - 1 or signs[end + 1] > 0
             inner = at > 0 and end < len(signs) - 1
             if signs[at] == 0 and falls and rises and (inner or end > at):
-                rows.append(_middle(pool, nodes[at : end + 1]))
+                level_rows.append((int(nodes[at]), int(nodes[end])))
             if signs[at] < 0 and end + 1 < len(signs) and signs[end + 1] > 0:
                 low.append(int(nodes[end]))
                 high.append(int(nodes[end + 1]))
             at = end + 1
     pool, more = _bracketed(region, pool, np.array(low, dtype=int), np.array(high, dtype=int))
-    return pool, np.concatenate([np.array(rows, dtype=np.int64), more])
+    pool, middles = _middles(region, pool, np.array(level_rows, dtype=int).reshape(-1, 2))
+    return pool, np.concatenate([np.array(rows, dtype=np.int64), middles, more])
 
 
-def _middle(pool: Pool, nodes: Ints) -> int:
-    """The disk nearest to the middle between the ends of parallel walls."""
-    ends = pool.disk[nodes[[0, -1]], :2]
-    middle = ends.mean(axis=0)
-    return int(nodes[np.argmin(np.hypot(*(pool.disk[nodes, :2] - middle).T))])
+def _middles(region: Region, pool: Pool, ends: Ints) -> tuple[Pool, Ints]:
+    """The disks in the middle of parallel walls, between two others."""
+    one = ends[:, 0] == ends[:, 1]
+    first, last = ends[~one].T
+    pool, good = between(region, pool, first, last, np.full(len(first), 0.5))
+    new = np.arange(len(pool.order) - len(first), len(pool.order))
+    return pool, np.concatenate([ends[one, 0], np.where(good, new, first)])
 
 
 def _bracketed(region: Region, pool: Pool, low: Ints, high: Ints) -> tuple[Pool, Ints]:

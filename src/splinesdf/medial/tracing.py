@@ -146,7 +146,7 @@ def around(shape: Shape, domain: Box | None) -> tuple[Shape, Box]:
         )
     frame = Shape.rectangle(*box)
     rest = replace(frame, y_down=shape.y_down, limits=shape.limits).difference(shape)
-    return replace(rest, name=shape.name), box
+    return replace(rest, name=shape.name, unit=shape.unit, page=shape.page), box
 
 
 def inside_axis(shape: Shape, tolerance: float) -> MedialAxis:
@@ -264,6 +264,9 @@ def _assembled(
         error=max(curves.error, float(corners.spread.max(initial=0.0))),
         complete=complete,
         name=region.shape.name,
+        y_down=region.shape.y_down,
+        unit=region.shape.unit,
+        page=region.shape.page,
     )
 
 
