@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import click
@@ -48,8 +49,10 @@ def axis(
     with working("finding the medial axis"):
         found = ss.medial_axis(drawn, tolerance, side=side, prune=prune, corners=not no_corners)
     if output is not None:
-        kept = ss.MedialAxis(**{**vars(found), "edges": tuple(found.longest_path())})
-        ss.write(output, (kept if longest else found).contours(), tolerance=tolerance)
+        edges = tuple(found.longest_path()) if longest else found.edges
+        if longest and not edges:
+            raise ss.InputError("expected an axis with two ends for --longest: this one has loops")
+        ss.write(output, replace(found, edges=edges).contours(), tolerance=tolerance)
     kinds = {kind: found.kind.count(kind) for kind in sorted(set(found.kind))}
     figures = {
         "vertices": kinds,

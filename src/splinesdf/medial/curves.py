@@ -218,8 +218,7 @@ def _fitted(
             break
         pool, five, lost = with_middles(region, pool, five)
         control, weight, off = _fit(pool, chained, five)
-        length = np.sqrt(np.sum((pool.disk[five[:, 4]] - pool.disk[five[:, 0]]) ** 2, axis=1))
-        little = length <= _SHORT * tolerance
+        little = _reach(pool, chained, five) <= _SHORT * tolerance
         middle = 0.5 * (pool.disk[five[:, 0]] + pool.disk[five[:, 4]])
         good = (off <= _SAFE * tolerance) & ~lost
         straight = ~good & little
@@ -251,6 +250,26 @@ def _fitted(
     return pool, done, worst, failed
 
 
+def _reach(pool: Pool, chained: int, five: Ints) -> Floats:
+    """How far the disks of a part are from its first one at most, in (x, y, r): (n,)."""
+    row, node = _inside(pool, chained, five)
+    apart = pool.disk[five] - pool.disk[five[:, :1]]
+    reach = np.sqrt(np.sum(apart * apart, axis=2)).max(axis=1)
+    apart = pool.disk[node] - pool.disk[five[row, 0]]
+    np.maximum.at(reach, row, np.sqrt(np.sum(apart * apart, axis=1)))
+    return np.asarray(reach)
+
+
+def _inside(pool: Pool, chained: int, five: Ints) -> tuple[Ints, Ints]:
+    """Disks of the chain that are between the ends of parts: the part and the disk of each."""
+    known = pool.order[:chained]
+    first = np.searchsorted(known, pool.order[five[:, 0]], side="right")
+    count = np.searchsorted(known, pool.order[five[:, 4]], side="left") - first
+    count = np.maximum(count, 0)
+    row = np.repeat(np.arange(len(five)), count)
+    return row, np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + first[row]
+
+
 def _fit(pool: Pool, chained: int, five: Ints) -> tuple[Floats, Floats, Floats]:
     """Control points and weights of arcs, and how far disks between are off."""
     start, end = pool.disk[five[:, 0]], pool.disk[five[:, 4]]
@@ -277,16 +296,10 @@ def _fit(pool: Pool, chained: int, five: Ints) -> tuple[Floats, Floats, Floats]:
     for k, t in ((1, 0.25), (2, 0.5), (3, 0.75)):
         off = np.maximum(off, off_arc(arcs, weight, pool.disk[five[:, k]], t))
     # Disks of the chain that are between: they are where elements meet, as the halves need not be.
+    row, node = _inside(pool, chained, five)
     low, high = pool.order[five[:, 0]], pool.order[five[:, 4]]
-    known = pool.order[:chained]
-    first = np.searchsorted(known, low, side="right")
-    count = np.searchsorted(known, high, side="left") - first
-    count = np.where(good & (off < np.inf), np.maximum(count, 0), 0)
-    row = np.repeat(np.arange(len(five)), count)
-    if len(row):
-        node = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + first[row]
-        share = (known[node] - low[row]) / (high - low)[row]
-        np.maximum.at(off, row, off_arc(arcs[row], weight[row], pool.disk[node], share))
+    share = (pool.order[node] - low[row]) / np.where(high > low, high - low, 1.0)[row]
+    np.maximum.at(off, row, off_arc(arcs[row], weight[row], pool.disk[node], share))
     return control, weight, np.where(good, off, np.inf)
 
 

@@ -213,6 +213,7 @@ def _feet_of_vertices(
     from splinesdf.medial.kernels.junctions import feet
 
     table: list[Part] = []
+    far: list[tuple[int, float]] = []
     before = np.empty_like(traced.map.next)
     before[traced.map.next] = np.arange(len(before))
     targets: list[tuple[int, int]] = []
@@ -226,6 +227,8 @@ def _feet_of_vertices(
                 _on_site(traced, traced.parts(int(before[back]))[-1], False),
             ]
             table += both if at_end else both[::-1]
+            # Where the disk is a point the arcs end in it.
+            far += [both[0][2:], both[1][:2]] if at_end else [both[1][:2], both[0][2:]]
             targets += [(place, 0), (place, 1)]
     if not table:
         return
@@ -239,7 +242,10 @@ def _feet_of_vertices(
     )
     which, sides = np.array(targets).T
     feet(traced.region.walk, arcs, np.ascontiguousarray(disk[which, :2]), met)
-    places[which, sides], params[which, sides] = met.element, met.at
+    point = disk[which, 2] == 0.0
+    element, at = (np.array(column) for column in zip(*far, strict=True))
+    places[which, sides] = np.where(point, element, met.element)
+    params[which, sides] = np.where(point, at, met.at)
 
 
 def _on_site(traced: Look, part: Part, forward: bool) -> Part:

@@ -37,6 +37,11 @@ from splinesdf.medial.walk import curvature_at
 _FALL = 1e-8
 # Coefficients below this share of their terms are rounding, and have no sign.
 _NOISE = 1e-13
+# Pieces of a degree above the first are compiled, to 4 ulp. On arclets of theirs that are shorter
+# than this share of the box, as next to cusps, curvature is rounding: between their neighbors it is
+# taken to rise or fall. Larger: ends are overlooked in details of that size; smaller: noise makes
+# ends, and the axis is refused.
+_DRAWN, _LOST = 3, 1e-5
 # Halvings of an arclet in which the derivative of curvature may have several roots. It is a
 # polynomial, so that few are needed; at the ceiling its middle is taken for a root.
 _HALVINGS = 24
@@ -177,7 +182,8 @@ def leaves_of(boundary: Arclets, walk: Walk, loops: Loops) -> Leaves:
     peaks: list[tuple[int, int, bool]] = []
     firsts = np.searchsorted(bent.element, loops.first)
     # Loops that are nowhere convex but in corners have no others; polygons have none at all.
-    convex = np.add.reduceat(bent.bend > 0.0, firsts[:-1]) > 0
+    total = np.concatenate([[0], np.cumsum(bent.bend > 0.0)])
+    convex = total[firsts[1:]] > total[firsts[:-1]]
     for j in np.flatnonzero(convex).tolist():
         peaks += _peaks(bent, walk, loops, int(firsts[j]), int(firsts[j + 1]))
     if peaks:
@@ -199,7 +205,11 @@ def _bent(boundary: Arclets, walk: Walk, loops: Loops) -> Bent:
     places = np.concatenate([np.zeros(count), at, np.ones(count)])
     bend = np.concatenate([start, inside, walk.numbers[:, 8]])
     order = np.lexsort((places, element))
-    return Bent(element[order], places[order], bend[order])
+    arclet = owner[element]
+    compiled = (kind[element] == FREE) & (boundary.arcs[arclet, 0] > _DRAWN)
+    lost = compiled & (loops.length[element] < _LOST * float(np.ptp(boundary.boxes[0])))
+    kept = order[~lost[order] | np.isinf(bend[order])]
+    return Bent(element[kept], places[kept], bend[kept])
 
 
 def _peaks(

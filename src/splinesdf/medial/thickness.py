@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf.errors import AxisIncomplete, InputError
-from splinesdf.ground.arrays import Bools, Floats, Ints, as_points, positive, shown
+from splinesdf.ground.arrays import Bools, Floats, Ints, as_points, shown
 from splinesdf.ground.values import by_value
 from splinesdf.medial.between import Pool, between, pool_of
 from splinesdf.medial.chords import Region
@@ -19,6 +19,7 @@ from splinesdf.medial.tables import FAN, Disks
 from splinesdf.medial.tracing import (
     Side,
     around,
+    checked_tolerance,
     graph_of,
     inside_axis,
     is_complete,
@@ -37,6 +38,8 @@ _LEVEL = 1e-10
 _STEPS, _FLAT = 60, 1e-12
 # The default tolerance of local thickness, as a share of the larger side.
 _OF_SIZE = 1e-3
+# Disks of local thickness. More: memory, and seconds for each point that small disks cover.
+_MOST = 1_000_000
 # Branches lower than this share of the larger side have no narrow place of their own.
 _LOW = 1e-6
 
@@ -327,11 +330,15 @@ def local_thickness(shape: Shape, points: ArrayLike, *, tolerance: float | None 
     from splinesdf.medial.kernels.covers import largest_cover
 
     array = as_points(points)
-    check_shape(shape)
-    tolerance = _OF_SIZE * shape.size if tolerance is None else positive(tolerance, "tolerance")
+    tolerance = checked_tolerance(check_shape(shape), tolerance)
     axis = inside_axis(shape, 0.25 * tolerance)
     if not axis.complete:
         raise AxisIncomplete(why(shape), axis)
+    if 4.0 * axis.length > _MOST * tolerance:
+        raise InputError(
+            f"expected a tolerance of at least {4.0 * axis.length / _MOST:.2g}, which takes "
+            f"{_MOST:,} disks, got {tolerance:.2g}: raise it"
+        )
     rows = [np.column_stack([axis.points, axis.radius])]
     for edge in axis.edges:
         # Disks so near to each other that what one covers the next covers within the tolerance.

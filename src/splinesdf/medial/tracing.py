@@ -93,13 +93,7 @@ def medial_axis(
     >>> axis.radius.max(), len(ss.medial_axis(ss.example("part"), side="outside").edges) > 0
     (1.0, True)
     """
-    check_shape(shape)
-    tolerance = _OF_SIZE * shape.size if tolerance is None else positive(tolerance, "tolerance")
-    if tolerance < _LEAST * shape.size:
-        raise InputError(
-            f"expected a tolerance of at least {_LEAST * shape.size:.2g}, rounding at this size, "
-            f"got {tolerance:.2g}: raise it"
-        )
+    tolerance = checked_tolerance(check_shape(shape), tolerance)
     height = tolerance if prune is None else finite(prune, "prune")
     if height < 0.0:
         raise InputError(f"expected prune of at least 0, got {height:g}")
@@ -114,6 +108,19 @@ def medial_axis(
     if not found.complete:
         raise AxisIncomplete(why(shape), found)
     return found.pruned(height, corners=corners) if height > 0.0 or not corners else found
+
+
+def checked_tolerance(shape: Shape, tolerance: float | None) -> float:
+    """The tolerance, or the default; an `InputError` below the rounding of disks."""
+    if tolerance is None:
+        return _OF_SIZE * shape.size
+    tolerance = positive(tolerance, "tolerance")
+    if tolerance < _LEAST * shape.size:
+        raise InputError(
+            f"expected a tolerance of at least {_LEAST * shape.size:.2g}, rounding at this size, "
+            f"got {tolerance:.2g}: raise it"
+        )
+    return tolerance
 
 
 def why(shape: Shape) -> str:
@@ -186,6 +193,10 @@ def leaves_in(shape: Shape) -> tuple[Region, Leaves]:
 def _counted(look: Look, chains: Chains, corners: Corners) -> bool:
     """Whether faces, chords, ends and loops are as many as they must be."""
     if look.unclear or look.bare or look.euler != look.region.loops.euler:
+        return False
+    # An end that is none of those known beforehand is the sign of another that is missing.
+    ends = np.bincount(chains.ends[chains.ends >= 0], minlength=len(corners.leaf))
+    if ((ends == 1) & (corners.leaf < 0)).any():
         return False
     open_ = chains.ends[:, 0] >= 0
     if (open_ != (chains.ends[:, 1] >= 0)).any():
