@@ -24,6 +24,8 @@ _STEPS = 200
 # A disk is empty if nothing is nearer to its center than this share of its radius, which is above
 # the rounding in a distance. Larger: feet of disks differ by as much; smaller: noise is followed.
 _EMPTY = 1.0 - 4e-15
+# And by less than this share of the largest coordinate: rounding where disks are small.
+_GRAIN = 8e-16
 # A closest point nearer to the foot than this share of the radius is the foot itself, to rounding,
 # or where the disk of curvature is the maximal one. Larger: disks beside ends of the axis are not
 # found; smaller: k is rounding.
@@ -49,7 +51,7 @@ def disks(searched: Searched, walk: Walk, most: float, found: Ints, room: Disks)
         Its first feet are read.
     """
     scratch = room_to_search(searched.arcs)
-    near = _NEAR * searched.largest
+    near, grain = _NEAR * searched.largest, _GRAIN * searched.largest
     for i in range(found.shape[0]):
         e, u = room.element[i, 0], room.at[i, 0]
         x, y, nx, ny = frame(walk, e, u)
@@ -65,7 +67,7 @@ def disks(searched: Searched, walk: Walk, most: float, found: Ints, room: Disks)
                 searched.tree,
                 searched.arcs,
                 (x + r * nx, y + r * ny),
-                r * _EMPTY,
+                r * _EMPTY - grain,
                 1,
                 -1,
                 -1.0,
