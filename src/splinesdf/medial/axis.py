@@ -48,11 +48,11 @@ class MedialAxis:
     >>> import splinesdf as ss
     >>> axis = ss.medial_axis(ss.Shape.rectangle(0, 0, 4, 2))
     >>> axis
-    <MedialAxis: 6 vertices, 5 edges, complete>
-    >>> sorted(axis.kind), axis.degree.max()
+    <MedialAxis rectangle: 6 vertices, 5 edges, complete>
+    >>> sorted(axis.kind), int(axis.degree.max())
     (['corner', 'corner', 'corner', 'corner', 'junction', 'junction'], 3)
     >>> axis.pruned(height=0.0, corners=False)
-    <MedialAxis: 2 vertices, 1 edge, complete>
+    <MedialAxis rectangle: 2 vertices, 1 edge, complete>
     """
 
     points: Floats
@@ -105,7 +105,7 @@ class MedialAxis:
         >>> import splinesdf as ss
         >>> axis = ss.medial_axis(ss.Shape.rectangle(0, 0, 4, 2))
         >>> axis.pruned(height=0.5)
-        <MedialAxis: 2 vertices, 1 edge, complete>
+        <MedialAxis rectangle: 2 vertices, 1 edge, complete>
         """
         height = finite(height, "height")
         if height < 0.0:

@@ -49,6 +49,8 @@ class AxisEdge:
     (2.0, 1.0, 1.0)
     >>> sorted(edge.points(0.1)[:, 0].tolist())
     [1.0, 3.0]
+    >>> edge.reversed().start == edge.end
+    True
     """
 
     start: int

@@ -89,8 +89,8 @@ def medial_axis(
     >>> import splinesdf as ss
     >>> axis = ss.medial_axis(ss.Shape.rectangle(0, 0, 4, 2))
     >>> axis
-    <MedialAxis: 6 vertices, 5 edges, complete>
-    >>> axis.radius.max(), len(ss.medial_axis(ss.example("part"), side="outside").edges) > 0
+    <MedialAxis rectangle: 6 vertices, 5 edges, complete>
+    >>> float(axis.radius.max()), len(ss.medial_axis(ss.example("part"), side="outside").edges) > 0
     (1.0, True)
     """
     tolerance = checked_tolerance(check_shape(shape), tolerance)
