@@ -115,8 +115,10 @@ def _with_vertices(
     before = region.loops.before
     rows: list[int] = []  # right ends; below zero for vertices
     first, ends = [0], []
+    known = np.column_stack([chords.center, chords.radius]).tolist()
+    vertices = np.column_stack([corners.center, corners.radius]).tolist()
     for start, rights, end in chains:
-        inner = _apart(traced, corners, start, rights, end)
+        inner = _apart(known, vertices, (start, rights, end), _SAME * region.size)
         closed = start < 0 and end < 0 and len(rights) > 1
         rows += [-start - 1] if start >= 0 else []
         rows += inner
@@ -168,18 +170,20 @@ def _nothing() -> Chains:
     return Chains(nodes, np.zeros(1, dtype=np.int64), none, none, none)
 
 
-def _apart(traced: Look, corners: Corners, start: int, rights: list[int], end: int) -> list[int]:
+def _apart(
+    chords: list[list[float]],
+    vertices: list[list[float]],
+    chain: tuple[int, list[int], int],
+    near: float,
+) -> list[int]:
     """The chords of a chain that are not the disk of a vertex at its end; one at least."""
-    near = _SAME * traced.region.size
-    center, radius = traced.chords.center, traced.chords.radius
+    start, rights, end = chain
 
     def same(right: int, vertex: int) -> bool:
         if vertex < 0:
             return False
-        i = right >> 1
-        off = abs(center[i, 0] - corners.center[vertex, 0])
-        off += abs(center[i, 1] - corners.center[vertex, 1])
-        return bool(off + abs(radius[i] - corners.radius[vertex]) <= near)
+        one, other = chords[right >> 1], vertices[vertex]
+        return sum(abs(a - b) for a, b in zip(one, other, strict=True)) <= near
 
     low, high = 0, len(rights)
     while high - low > 1 and same(rights[low], start):

@@ -45,8 +45,9 @@ _DRAWN, _LOST = 3, 1e-5
 # Halvings of an arclet in which the derivative of curvature may have several roots. It is a
 # polynomial, so that few are needed; at the ceiling its middle is taken for a root.
 _HALVINGS = 24
-# Roots by bisection.
-_BISECTIONS = 52
+# Roots by bisection: to 1e-9 of an arclet. Curvature is level there, so that its maximum, and the
+# center of curvature, are known to rounding.
+_BISECTIONS = 30
 
 
 class Bent(NamedTuple):
@@ -259,24 +260,20 @@ def _persistent(values: list[float]) -> list[int]:
         before, value, behind = values[k - 1], values[k], values[(k + 1) % count]
         if (value > before) != (behind > value):
             extremes.append(k)
+    level = np.array([values[k] for k in extremes])
     while len(extremes) > 2:
         # The smallest rise or fall between neighbors.
-        best, at = np.inf, -1
-        for k in range(len(extremes)):
-            a, b = values[extremes[k]], values[extremes[(k + 1) % len(extremes)]]
-            high = max(a, b)
-            fall = (
-                np.inf
-                if not np.isfinite(high) or min(a, b) == -np.inf
-                else abs(a - b) / abs(high or 1.0)
-            )
-            if fall < best:
-                best, at = fall, k
-        if best > _FALL:
+        other = np.roll(level, -1)
+        high, low = np.maximum(level, other), np.minimum(level, other)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            fall = np.where(np.isinf(high) | np.isinf(low), np.inf, (high - low) / np.abs(high))
+        at = int(np.argmin(fall))
+        if not fall[at] <= _FALL:
             break
-        other = (at + 1) % len(extremes)
         # Both go, so that maxima and minima still alternate.
-        extremes = [e for k, e in enumerate(extremes) if k not in (at, other)]
+        gone = {at, (at + 1) % len(extremes)}
+        extremes = [e for k, e in enumerate(extremes) if k not in gone]
+        level = np.delete(level, list(gone))
     return [
         e
         for k, e in enumerate(extremes)

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from splinesdf.ground.arrays import Floats
+from splinesdf.medial.conics import conic_points
 from splinesdf.medial.edge import AxisEdge, joined
 
 # Disks of one arc by which its height is measured.
@@ -26,6 +28,19 @@ class Graph(NamedTuple):
     radius: Floats  # (n,)
     kind: tuple[str, ...]
     edges: tuple[AxisEdge, ...]
+
+
+def _samples(edges: tuple[AxisEdge, ...]) -> dict[int, list[Floats]]:
+    """Disks of each edge."""
+    if not edges:
+        return {}
+    arcs = np.concatenate([edge.arcs for edge in edges])
+    weights = np.concatenate([edge.weights for edge in edges])
+    count = len(_LOOKED)
+    places = np.tile(_LOOKED, len(arcs))
+    disks = conic_points(np.repeat(arcs, count, axis=0), np.repeat(weights, count), places)
+    bounds = count * np.cumsum([0] + [len(edge.arcs) for edge in edges])
+    return {k: [disks[a:b]] for k, (a, b) in enumerate(pairwise(bounds.tolist()))}
 
 
 def pruned(graph: Graph, height: float, corners: bool) -> Graph:
@@ -55,7 +70,9 @@ class _Cut:
         self.lost: dict[int, list[Floats]] = {}
         self.lost_on: dict[int, list[Floats]] = {}
         self.queue: list[tuple[float, int, int]] = []
-        self.seen: dict[tuple[int, int], list[Floats]] = {}
+        self.looks = [0] * len(graph.radius)  # how often a vertex was looked at: the last counts
+        self.samples = _samples(graph.edges)
+        self.vertices = np.column_stack([graph.points, graph.radius])
 
     def corners(self) -> None:
         """Cut the branches that end in corners, up to the first junction."""
@@ -71,15 +88,11 @@ class _Cut:
         for vertex in range(len(self.at)):
             self._look(vertex)
         while self.queue:
-            low, vertex, edge = heapq.heappop(self.queue)
+            low, vertex, look = heapq.heappop(self.queue)
             if low >= height:
                 break
-            if vertex in self.gone or self.at[vertex] != [edge] or edge not in self.edges:
-                continue
-            if self._height(vertex) > low:
-                self._look(vertex)
-                continue
-            self._cut(vertex)
+            if vertex not in self.gone and len(self.at[vertex]) == 1 and look == self.looks[vertex]:
+                self._cut(vertex)
 
     def _other(self, edge: int, vertex: int) -> int:
         one = self.edges[edge]
@@ -87,6 +100,7 @@ class _Cut:
 
     def _look(self, vertex: int) -> None:
         """Put a branch that ends in a vertex on the list."""
+        self.looks[vertex] += 1
         if vertex not in self.gone and len(self.at[vertex]) == 1:
             height = self._height(vertex)
             far = self._other(self.at[vertex][0], vertex)
@@ -94,16 +108,13 @@ class _Cut:
             alone = len(self.at[far]) == 1
             radius = self.graph.radius
             if not (alone and (radius[vertex], vertex) > (radius[far], far)):
-                heapq.heappush(self.queue, (height, vertex, self.at[vertex][0]))
+                heapq.heappush(self.queue, (height, vertex, self.looks[vertex]))
 
     def _disks(self, vertex: int) -> list[Floats]:
         """All disks that go with a branch."""
         number = self.at[vertex][0]
-        edge = self.edges[number]
-        places = (np.arange(len(edge.arcs))[:, None] + _LOOKED).ravel()
         lost = self.lost.get(vertex, []) + self.lost_on.get(number, [])
-        own = np.append(self.graph.points[vertex], self.graph.radius[vertex])[None]
-        return [own, edge.at(places), *lost]
+        return [self.vertices[vertex : vertex + 1], *self.samples[number], *lost]
 
     def _height(self, vertex: int) -> float:
         far = self._other(self.at[vertex][0], vertex)
@@ -143,6 +154,7 @@ class _Cut:
         first = first if first.end == vertex else first.reversed()
         second = second if second.start == vertex else second.reversed()
         self.edges[one] = joined(first, second)
+        self.samples[one] = self.samples[one] + self.samples.pop(other)
         lost = self.lost.pop(vertex, []) + self.lost_on.pop(other, [])
         self.lost_on.setdefault(one, []).extend(lost)
         del self.edges[other]
