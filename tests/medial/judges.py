@@ -11,9 +11,10 @@ def disks_of(axis: ss.MedialAxis, spacing: float) -> np.ndarray:
     """Disks (n, 3) of all vertices and edges, on edges no farther apart than the spacing."""
     rows = [np.column_stack([axis.points, axis.radius])]
     for edge in axis.edges:
-        reach = edge.length + edge.largest - edge.smallest
-        count = max(2 * len(edge.arcs) + 1, int(reach / spacing) + 2)
-        rows.append(edge.at(np.linspace(0.0, len(edge.arcs), count)))
+        # No arc is longer, in (x, y, r), than the polygon of its control points.
+        reach = np.sqrt((np.diff(edge.arcs, axis=1) ** 2).sum(axis=2)).sum(axis=1)
+        for k, most in enumerate(reach.tolist()):
+            rows.append(edge.at(k + np.linspace(0.0, 1.0, int(most / spacing) + 3)))
     return np.concatenate(rows)
 
 
