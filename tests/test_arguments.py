@@ -51,7 +51,7 @@ def contour() -> ss.Contour:
 # a few, each of which is tried. Everything else is none.
 KINDS: dict[str, str] = {
     **dict.fromkeys(("tolerance", "step", "max_distance", "min_side", "level", "beyond"), "number"),
-    **dict.fromkeys(("gap", "unit", "size", "range", "em", "scale"), "number"),
+    **dict.fromkeys(("gap", "unit", "size", "range", "em", "scale", "prune"), "number"),
     **dict.fromkeys(("dx", "dy", "degrees", "radius"), "number"),
     **dict.fromkeys(("xmin", "ymin", "xmax", "ymax"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
@@ -73,7 +73,7 @@ KINDS: dict[str, str] = {
             *("y_down", "notes", "loops", "sections", "x", "y", "mesh", "made", "closed", "parent"),
             *("function", "starts", "split", "columns", "rows", "spline", "ax", "result", "filled"),
             *("spline_or_mesh", "figure", "curve", "source", "characters"),
-            *("progress", "holes", "other", "options", "factor"),
+            *("progress", "holes", "other", "options", "factor", "side", "corners"),
         ),
         "other",
     ),
@@ -109,6 +109,7 @@ GOOD: dict[str, Any] = {
     "page": (0.0, 0.0, 2.0, 3.0),
     "origin": (1.0, 2.0),
     "max_distance": 0.5,
+    "prune": 0.01,
     "min_side": 0.001,
     "max_cells": 100_000,
     "band": (-0.1, 0.1),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         signed_distance_grid,
     )
     from splinesdf.errors import (
+        AxisIncomplete,
         InputError,
         MissingExtraError,
         OpenContourError,
@@ -30,6 +31,16 @@ if TYPE_CHECKING:
     from splinesdf.io.input import example, read, read_all
     from splinesdf.io.output import write
     from splinesdf.io.writers.options import Milling
+    from splinesdf.medial.axis import MedialAxis
+    from splinesdf.medial.edge import AxisEdge
+    from splinesdf.medial.thickness import (
+        MaximalDisks,
+        Narrow,
+        local_thickness,
+        maximal_disk,
+        thickness,
+    )
+    from splinesdf.medial.tracing import medial_axis
     from splinesdf.meshes.lattice import DistanceGrid
     from splinesdf.offsets.offset import offset
     from splinesdf.rasters.atlas import atlas
@@ -44,13 +55,18 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = [
     "Atlas",
+    "AxisEdge",
+    "AxisIncomplete",
     "Contour",
     "DistanceGrid",
     "FitResult",
     "InputError",
     "Limits",
+    "MaximalDisks",
+    "MedialAxis",
     "Milling",
     "MissingExtraError",
+    "Narrow",
     "OpenContourError",
     "Progress",
     "Projection",
@@ -68,6 +84,9 @@ __all__ = [
     "from_level_set",
     "interpolate",
     "load",
+    "local_thickness",
+    "maximal_disk",
+    "medial_axis",
     "offset",
     "plot",
     "project",
@@ -76,6 +95,7 @@ __all__ = [
     "signed_distance",
     "signed_distance_grid",
     "texture",
+    "thickness",
     "write",
 ]
 
@@ -92,6 +112,7 @@ _MODULES = {
         "signed_distance_grid",
     ),
     "errors": (
+        "AxisIncomplete",
         "InputError",
         "MissingExtraError",
         "OpenContourError",
@@ -112,6 +133,16 @@ _MODULES = {
     ),
     "io.output": ("write",),
     "io.writers.options": ("Milling",),
+    "medial.axis": ("MedialAxis",),
+    "medial.edge": ("AxisEdge",),
+    "medial.thickness": (
+        "MaximalDisks",
+        "Narrow",
+        "local_thickness",
+        "maximal_disk",
+        "thickness",
+    ),
+    "medial.tracing": ("medial_axis",),
     "meshes.lattice": ("DistanceGrid",),
     "offsets.offset": ("offset",),
     "rasters.atlas": ("atlas",),

@@ -82,3 +82,25 @@ class ToleranceNotReached(SplineSDFError):
     def __reduce__(self) -> tuple[Any, ...]:
         # By itself an exception is made anew from its message alone.
         return type(self), (*self.args, self.result), self.__dict__
+
+
+class AxisIncomplete(SplineSDFError):
+    """A medial axis of which something may be missing; ``result`` holds what was found.
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> try:
+    ...     axis = ss.medial_axis(ss.example("part"))
+    ... except ss.AxisIncomplete as error:
+    ...     axis = error.result  # not to be trusted: axis.complete is False
+    >>> axis.complete
+    True
+    """
+
+    def __init__(self, message: str, result: Any) -> None:
+        super().__init__(message)
+        self.result = result
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (*self.args, self.result), self.__dict__

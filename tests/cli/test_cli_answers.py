@@ -25,6 +25,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "query": ("square.csv", "points.csv"),
     "texture": ("square.csv", "--texels", "8", "--range", "0.5", "-o", "a.png"),
     "atlas": ("drawings", "-o", "b.png"),
+    "axis": ("square.csv", "-o", "c.svg"),
+    "thickness": ("square.csv", "--side", "outside"),
     "view": ("square.csv", "--tolerance", "0.1", "--html", "a.html"),
 }
 

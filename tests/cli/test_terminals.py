@@ -34,6 +34,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
         *("part", "-d", "1.2345678", "-d", "-1000", "-o", "é.svg"),
         *("--check", "--tolerance", "0.0123456"),
     ),
+    "axis": ("part", "-o", "é.svg", "--tolerance", "0.0123456"),
+    "thickness": ("part", "--count", "2"),
     "texture": ("é€.csv", "-o", "é.png", "--range", "0.1234567"),
     "atlas": ("drawings é", "-o", "é.png", "--size", "12.345678"),
     "view": ("é€.csv", "--html", "é.html", "--tolerance", "0.05"),

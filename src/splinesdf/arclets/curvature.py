@@ -141,17 +141,17 @@ def curvature_ranges(control: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _ranges(control: Floats) -> tuple[Floats, Floats, Floats]:
     """As `curvature_ranges`, of arcs (d + 1, 2, n): sums of coefficients are sums of long rows."""
-    first = _derivative(control)
-    second = _derivative(first)
-    third = _derivative(second)
-    cross = _product(first[:, 0], second[:, 1]) - _product(first[:, 1], second[:, 0])
+    first = derivative(control)
+    second = derivative(first)
+    third = derivative(second)
+    cross = product(first[:, 0], second[:, 1]) - product(first[:, 1], second[:, 0])
     noise = _SLACK * np.abs(first).max(axis=(0, 1)) * np.abs(second).max(axis=(0, 1))
     cross_low, cross_high = cross.min(axis=0) - noise, cross.max(axis=0) + noise
-    squared = _product(first[:, 0], first[:, 0]) + _product(first[:, 1], first[:, 1])
+    squared = product(first[:, 0], first[:, 0]) + product(first[:, 1], first[:, 1])
     speed_low = squared.min(axis=0) - _SLACK * squared.max(axis=0)
     speed_high = squared.max(axis=0) * (1.0 + _SLACK)
-    cross_third = _product(first[:, 0], third[:, 1]) - _product(first[:, 1], third[:, 0])
-    along = _product(first[:, 0], second[:, 0]) + _product(first[:, 1], second[:, 1])
+    cross_third = product(first[:, 0], third[:, 1]) - product(first[:, 1], third[:, 0])
+    along = product(first[:, 0], second[:, 0]) + product(first[:, 1], second[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         slowest = np.where(speed_low > 0.0, speed_low, 0.0) ** 1.5
         fastest = speed_high**1.5
@@ -170,7 +170,7 @@ def _ranges(control: Floats) -> tuple[Floats, Floats, Floats]:
     )
 
 
-def _derivative(points: Floats) -> Floats:
+def derivative(points: Floats) -> Floats:
     """Control points of the derivatives: (d + 1, 2, n) -> (d, 2, n), but (1, 2, n) for d = 0."""
     degree = len(points) - 1
     if degree == 0:
@@ -178,7 +178,7 @@ def _derivative(points: Floats) -> Floats:
     return np.asarray(degree * np.diff(points, axis=0))
 
 
-def _product(one: Floats, other: Floats) -> Floats:
+def product(one: Floats, other: Floats) -> Floats:
     """Bernstein coefficients (a + b + 1, n) of products of polynomials (a + 1, n), (b + 1, n)."""
     a, b = len(one) - 1, len(other) - 1
     result = np.zeros((a + b + 1, one.shape[1]))

@@ -19,6 +19,7 @@ except ImportError:
     raise SystemExit(2) from None
 
 from splinesdf.cli.atlas import atlas
+from splinesdf.cli.axis import axis
 from splinesdf.cli.completion import completion
 from splinesdf.cli.console import write_on_any_terminal
 from splinesdf.cli.demo import demo
@@ -28,6 +29,7 @@ from splinesdf.cli.offset import offset
 from splinesdf.cli.paper import paper
 from splinesdf.cli.query import query
 from splinesdf.cli.texture import texture
+from splinesdf.cli.thickness import thickness
 from splinesdf.cli.view import view
 
 
@@ -86,5 +88,6 @@ def commands() -> None:
     """
 
 
-for _command in (fit, offset, query, texture, atlas, view, paper, info, demo, completion):
+_COMMANDS = (fit, offset, axis, thickness, query, texture, atlas, view, paper, info, demo)
+for _command in (*_COMMANDS, completion):
     commands.add_command(_command)

@@ -1,0 +1,1 @@
+"""The medial axis of a shape, wall thickness, and largest inscribed disks."""
