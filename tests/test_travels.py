@@ -28,7 +28,9 @@ import splinesdf as ss
 from splinesdf.fits.fit import fit_steps
 from splinesdf.io.enclosed import Sides
 from splinesdf.io.readers.fonts_glyphs import Kern
+from splinesdf.io.programs import Move, Way
 from splinesdf.io.remeasured import Worst
+from splinesdf.io.writers.machines import MACHINES
 from splinesdf.paper.tables import Row
 from tests.named_shapes import gamma
 
@@ -142,6 +144,9 @@ def examples() -> dict[type, Any]:
         dataclasses.replace(ss.atlas({"limaçon": shape}, size=8), kerning=(Kern("A", "V", -0.1),)),
         ss.offset(shape, [-0.02, 0.1], tolerance=1e-4),
         ss.Milling(feed=100.0),
+        MACHINES["grbl"],
+        Move(0j, 1 + 0j, (0.0, -1.0)),
+        Way(-2.0, 0, moves=[Move(0j, 1 + 0j, (0.0, -1.0))]),
         ss.Progress("offset by 1", 1, 2),
         shape.joints,
         shape.kinds,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from splinesdf.ground.progress import Progress
     from splinesdf.io.input import example, read, read_all
     from splinesdf.io.output import write
-    from splinesdf.io.writers.options import Milling
+    from splinesdf.io.writers.milling import Milling
     from splinesdf.meshes.lattice import DistanceGrid
     from splinesdf.offsets.offset import offset
     from splinesdf.rasters.atlas import atlas
@@ -111,7 +111,7 @@ _MODULES = {
         "read_all",
     ),
     "io.output": ("write",),
-    "io.writers.options": ("Milling",),
+    "io.writers.milling": ("Milling",),
     "meshes.lattice": ("DistanceGrid",),
     "offsets.offset": ("offset",),
     "rasters.atlas": ("atlas",),

@@ -11,6 +11,7 @@ import click
 import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.console import answer, answering, note, working
+from splinesdf.cli.milling import about_feed, milling_of, milling_options
 from splinesdf.cli.pipes import OUTPUT
 from splinesdf.cli.shapes import (
     check_outputs,
@@ -27,7 +28,7 @@ from splinesdf.io.output import check_format, file_text
 from splinesdf.io.placing import CORNERS
 from splinesdf.io.remeasured import Worst, measure_file
 from splinesdf.io.source_frame import Told
-from splinesdf.io.writers.options import DIRECTIONS, UNITS, Y_UP, factor, is_used
+from splinesdf.io.writers.options import GCODE, UNITS, Y_UP, factor, is_used
 from splinesdf.offsets.offset import least_tolerance
 
 # Shares of the tolerance for the offset; the file gets the rest. DXF without --arcs is exact; in
@@ -35,7 +36,6 @@ from splinesdf.offsets.offset import least_tolerance
 # polylines (order two) need the room more than the offset's conics (order five). Larger for those:
 # more biarcs and vertices; smaller: conics that nobody sees.
 _EXACT, _MOSTLY, _LITTLE = 1.0, 0.875, 0.125
-_MILLING = ("feed", "safe_height", "depth", "start", "direction")
 
 
 @click.command()
@@ -58,15 +58,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 @click.option("--scale", type=float, default=1.0, help="Enlarge the numbers of the files.")
 @click.option("--origin", help="What becomes 0,0: lower-left, center, or a point X,Y of SHAPE.")
 @click.option("--flip/--no-flip", default=None, help="Mirror y, or not.  [as the file's axis asks]")
-@click.option("--feed", type=float, help="G-code: speed of cutting, in units a minute.")
-@click.option("--safe-height", type=float, help="G-code: Z between contours.  [default: 5]")
-@click.option("--depth", type=float, help="G-code: how deep to cut below Z = 0.  [default: 0]")
-@click.option("--start", type=float, nargs=2, help="G-code: X Y, begin near here.  [default: 0 0]")
-@click.option(
-    "--direction",
-    type=click.Choice(DIRECTIONS),
-    help="G-code: for a spindle that turns clockwise.  [default: climb]",
-)
+@milling_options
 @click.option(
     "--check",
     is_flag=True,
@@ -94,11 +86,10 @@ def offset(
         got = "both" if distances else "neither"
         raise ss.InputError(f"expected either --distance (-d) or --step, got {got}: give one")
     source = read_shape(shape, reading)
-    given = {name: flags[name] for name in _MILLING if flags[name] is not None}
     options: dict[str, Any] = {
         "arcs": flags["arcs"],
         "units": flags["units"],
-        "milling": ss.Milling(**given) if given else None,
+        "milling": milling_of(flags),
         "scale": flags["scale"],
         "origin": _origin(flags["origin"]),
         "flip": flags["flip"],
@@ -127,6 +118,8 @@ def offset(
     distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
     figures = report.offset_figures(source, contours, distances)
     notes = [_about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
+    if any(suffix in GCODE for suffix in map(_suffix, files)):
+        notes.append(about_feed(options["milling"], flags["units"]))
     for line in filter(None, dict.fromkeys(notes)):
         note(f"note: {line}")
     passed = _keeps(report.worst_of(figures), tolerance)
@@ -136,7 +129,10 @@ def offset(
         ended = () if step is None else ((len(distances) + 1) * step,)
         for output, used in files.items():
             told = Told(**{name: used[name] for name in Told._fields if name in used})
-            worst = _measured(output, source, contours, (*distances, *ended), tolerance, told)
+            levels = (*distances, *ended)
+            worst = _measured(
+                *(output, source, contours, levels, tolerance, told), used.get("milling")
+            )
             passed &= worst is not None and _is_complete(worst, contours, tolerance)
             checked += [] if worst is None else [(output, worst)]
 
@@ -287,12 +283,13 @@ def _measured(
     distances: tuple[float, ...],
     tolerance: float,
     told: Told,
+    milling: ss.Milling | None,
 ) -> Worst | None:
     """Measure the file again, or say why it cannot be measured."""
     every = sorted({*(float(contour.distance) for contour in contours), *distances})
     try:
         with working(f"reading {Path(output).name} back"):
-            return measure_file(output, source, every, tolerance, told, contours)
+            return measure_file(output, source, every, tolerance, told, contours, milling)
     except ss.InputError as error:  # what was written is not what it should be
         _complain(str(error))
         return None
@@ -307,6 +304,8 @@ def _is_complete(worst: Worst, contours: list[ss.Contour], tolerance: float) -> 
         _complain(f"expected closed curves, got one whose ends are {worst.gap:.4g} apart")
     if worst.points:
         _complain(f"expected curves with an extent, got {worst.points} that are points")
+    for fault in worst.faults:
+        _complain(fault)
     for sides in worst.sides:
         if sides.wrong:
             _complain(report.wrong_sides(sides))

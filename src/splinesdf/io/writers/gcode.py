@@ -1,30 +1,25 @@
 """Contours as G-code: straight moves (G1) and circular ones (G2, G3) of a milling machine.
 
-    contours ─y up, lines and circular arcs, turned to the direction asked─→ paths
-             ─the nearest one next of those in which nothing is left to cut, entered at its
-              nearest point─→ moves
+    contours ─y up, lines and circular arcs─→ paths in order (`paths`)
+             ─the words of the machine (`machines`), passes, feeds, spindle or laser─→ program
 
-What is cut out of the sheet may move: so holes come before the outline around them.
-
-The words are those that LinuxCNC, GRBL, Fanuc and their kin share: G17 (the XY plane), G20 or G21
-(inch, mm), G40 (no radius compensation), G90 (absolute ends), G91.1 (I and J from the arc's
-start), G94 (feed per minute), M2 (the end). The spindle is left to who mounts the tool.
+A cut is never without a feed: where none is asked for, a slow one is written, and said.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind
 from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import smallest_around
-from splinesdf.ground.arrays import Bools
-from splinesdf.io.writers.options import Milling, Options
+from splinesdf.io.writers.machines import MACHINES
+from splinesdf.io.writers.milling import DEFAULT_FEED, Milling
+from splinesdf.io.writers.options import Options
+from splinesdf.io.writers.paths import Path, ordered, path_of
 
 # The last digit is a hundredth to a thousandth of the tolerance, and never coarser than this many
 # decimals: controls refuse arcs whose two radii differ by 0.005 mm or 0.0005 inch.
@@ -34,164 +29,109 @@ _FEWEST_DECIMALS = 4
 _SHARE = 0.98
 # More digits than doubles have say nothing.
 _DIGITS = 15
-# Arcs of a smaller sweep (radians) are straight where the nearest point is looked for: within 1e-7
-# of their chords.
-_FLAT = 1e-6
 # Nearer to an element's end than so many last digits a path is entered in that end: a shorter
 # first or last move would be all rounding.
 _SNAP = 100.0
 
 
-@dataclass(frozen=True)
-class _Path:
-    """One contour as the tool follows it."""
-
-    distance: float
-    closed: bool
-    pieces: list[Element]
-
-    def entered(self, at: int, share: float) -> _Path:
-        """The same, closed, from a point of one of its pieces on."""
-        piece = self.pieces[at]
-        if piece.is_full:
-            start = piece.cut([share])[0].end if 0.0 < share < 1.0 else piece.start
-            whole = Element(
-                *(piece.kind, piece.first, piece.count, start, start),
-                *(piece.center, piece.radius, piece.sweep),
-            )
-            return _Path(self.distance, True, [whole])
-        if share in (0.0, 1.0):
-            at = (at + int(share)) % len(self.pieces)
-            return _Path(self.distance, True, self.pieces[at:] + self.pieces[:at])
-        before, after = piece.cut([share])
-        pieces = [after, *self.pieces[at + 1 :], *self.pieces[:at], before]
-        return _Path(self.distance, True, pieces)
-
-
 def gcode_text(contours: Sequence[Contour], options: Options) -> str:
-    """A program that follows each contour once, at one depth, and lifts the tool in between.
+    """A program that follows each contour, in passes if asked, and lifts the tool in between.
 
     Arcs turn by half at most; a contour that is a full circle is two of them. What is shorter
     than the last digit is left out, what bulges by less than half of it is straight.
     """
     milling = Milling() if options.milling is None else options.milling
-    units = "mm" if options.units is None else options.units
     largest = max(float(np.abs(contour.arcs).max()) for contour in contours)
     decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(options.tolerance)) + _DECIMALS_BEYOND)
     decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
     mirrored = options.mirrored or (False,) * len(contours)
     paths = [
-        _path(contour, _SHARE * options.tolerance, milling.direction, seen)
+        path_of(contour, _SHARE * options.tolerance, milling.direction, seen)
         for contour, seen in zip(contours, mirrored, strict=True)
     ]
     cut = [k for k, path in enumerate(paths) if path.pieces]
     around = smallest_around([contours[k] for k in cut])
-    safe, plunge = f"G0 Z{_plain(milling.safe_height)}", f"G1 Z{_plain(-milling.depth)}"
-    if milling.feed is not None:
-        plunge += f" F{_plain(milling.feed)}"
-    lines = [
-        f"(splinesdf: {len(paths)} contours, lengths in {units})",
-        f"(within {options.tolerance:.6g}, {milling.direction} milling)",
-        "(start the spindle before: clockwise, seen from above)",
-        f"G17 {'G21' if units == 'mm' else 'G20'} G40 G90 G91.1 G94",
-        safe,
-    ]
+    program = _Program(milling, options, decimals)
+    program.begin(len(paths))
     snap = _SNAP * 10.0**-decimals
-    for path in _ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
-        start = path.pieces[0].start
-        lines += [f"(distance {float(path.distance) + 0.0!r})", f"G0 {_xy(start, decimals)}"]
-        lines += [plunge, *_moves(path, decimals), safe]
-    return "\n".join([*lines, "M2"]) + "\n"
+    for path in ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
+        program.follow(path)
+    return program.ended()
 
 
-def _path(contour: Contour, tolerance: float, direction: str, mirrored: bool) -> _Path:
-    """The contour with what stays on the right (climb) or on the left."""
-    pieces = arc_elements(contour, tolerance=tolerance)
-    # Contours have the side nearer to the inside on their left, where x turns into y; a mirror
-    # changes sides. The shape is inside, and it stays if the way is around it.
-    inside_on_left = not mirrored
-    stays_on_left = inside_on_left == (contour.distance >= 0.0)
-    if stays_on_left == (direction == "climb"):
-        pieces = [
-            Element(p.kind, p.first, p.count, p.end, p.start, p.center, p.radius, -p.sweep)
-            for p in reversed(pieces)
-        ]
-    return _Path(contour.distance, contour.closed, pieces)
+class _Program:
+    """The lines of a program, and the feed that is in force after them."""
+
+    def __init__(self, milling: Milling, options: Options, decimals: int) -> None:
+        self.milling, self.machine = milling, MACHINES[milling.machine]
+        self.units = "mm" if options.units is None else options.units
+        self.tolerance, self.decimals = options.tolerance, decimals
+        self.lines: list[str] = []
+        self.feed = _plain(milling.feed or DEFAULT_FEED[self.units])
+        self.plunge = self.feed if milling.plunge_feed is None else _plain(milling.plunge_feed)
+        self.in_force = ""
+
+    def begin(self, count: int) -> None:
+        """What the program is, the modes, and the spindle."""
+        milling = self.milling
+        self.say(f"splinesdf: {count} contours, lengths in {self.units}")
+        self.say(f"within {self.tolerance:.6g}, {milling.direction} milling")
+        if milling.feed is None:
+            self.say(f"no feed was asked for: {self.feed} a minute, which is slow")
+        if milling.laser_power is None and milling.spindle_speed is None:
+            self.say("start the spindle before: clockwise, seen from above")
+        words = {"units": "G21" if self.units == "mm" else "G20"}
+        words["tolerance"] = _plain(float(f"{self.tolerance:.6g}"))
+        self.lines += [line.format(**words) for line in self.machine.header]
+        if milling.laser_power is not None:
+            self.lines.append("M5")
+            return
+        self.lift()
+        if milling.spindle_speed is not None:
+            self.lines += filter(None, [f"M3 S{_plain(milling.spindle_speed)}", self.machine.dwell])
+
+    def ended(self) -> str:
+        """The whole text."""
+        if self.milling.spindle_speed is not None:
+            self.lines.append("M5")
+        return "\n".join([*self.lines, *self.machine.end]) + "\n"
+
+    def say(self, text: str) -> None:
+        self.lines.append(self.machine.comment.format(text))
+
+    def lift(self) -> None:
+        self.lines.append(f"G0 Z{_plain(self.milling.safe_height)}")
+
+    def follow(self, path: Path) -> None:
+        """One contour: there, down, along it, and up; a closed one is gone down in at its start."""
+        self.say(f"distance {float(path.distance) + 0.0!r}")
+        there = f"G0 {_xy(path.pieces[0].start, self.decimals)}"
+        self.lines.append(there)
+        if self.milling.laser_power is not None:
+            self.lines.append(f"{self.milling.beam} S{_plain(self.milling.laser_power)}")
+            self.cut(path)
+            self.lines.append("M5")
+            return
+        depths = self.milling.depths
+        for k, depth in enumerate(depths):
+            if k and not path.closed:
+                self.lift()
+                self.lines.append(there)
+            if len(depths) > 1:
+                self.say(f"pass {k + 1} of {len(depths)}")
+            self.lines.append(f"G1 Z{_plain(-depth)} F{self.plunge}")
+            self.in_force = self.plunge
+            self.cut(path)
+        self.lift()
+
+    def cut(self, path: Path) -> None:
+        """The moves along a path, the first with the feed if another one is in force."""
+        for move in _moves(path, self.decimals):
+            self.lines.append(move if self.in_force == self.feed else f"{move} F{self.feed}")
+            self.in_force = self.feed
 
 
-def _ordered(
-    paths: Sequence[_Path], around: Sequence[int], here: complex, snap: float
-) -> Iterator[_Path]:
-    """The paths, always the one next that is nearest to where the tool is then.
-
-    Only those in which nothing is left are asked; ``around`` is `smallest_around`'s.
-    """
-    near = _Near(paths)
-    left_inside = np.bincount([k for k in around if k >= 0], minlength=len(paths))
-    for _ in paths:
-        row, share = near.nearest(here, left_inside == 0)
-        chosen = int(near.path[row])
-        path, at, length = paths[chosen], int(near.piece[row]), float(near.lengths[row])
-        near = near.without(chosen)
-        if around[chosen] >= 0:
-            left_inside[around[chosen]] -= 1
-        if path.closed:
-            share = 0.0 if share * length < snap else share
-            share = 1.0 if (1.0 - share) * length < snap else share
-            path = path.entered(at, share)
-        here = path.pieces[-1].end
-        yield path
-
-
-class _Near:
-    """The pieces of paths as arrays, to be asked for the nearest point; of open ones the start."""
-
-    def __init__(self, paths: Sequence[_Path]) -> None:
-        rows = [
-            (i, k, piece, path.closed)
-            for i, path in enumerate(paths)
-            for k, piece in enumerate(path.pieces if path.closed else path.pieces[:1])
-        ]
-        self.path = np.array([i for i, *_ in rows])
-        self.piece = np.array([k for _, k, *_ in rows])
-        self.start = np.array([p.start for *_, p, _ in rows])
-        self.way = np.array([p.end - p.start if closed else 0j for *_, p, closed in rows])
-        self.center = np.array([p.center for *_, p, _ in rows])
-        self.sweep = np.array([p.sweep for *_, p, _ in rows])
-        # Of flatter arcs the chord is as near, and the center too far away to tell angles.
-        self.round = np.array(
-            [p.kind is Kind.CIRCLE and closed and abs(p.sweep) > _FLAT for *_, p, closed in rows]
-        )
-        radius = np.array([p.radius for *_, p, _ in rows])
-        self.lengths = np.where(self.round, radius * np.abs(self.sweep), np.abs(self.way))
-
-    def without(self, path: int) -> _Near:
-        """The same, all but one path's."""
-        result = object.__new__(_Near)
-        kept = self.path != path
-        vars(result).update({name: values[kept] for name, values in vars(self).items()})
-        return result
-
-    def nearest(self, here: complex, allowed: Bools) -> tuple[int, float]:
-        """In which row, at which share of the piece, the nearest point of an allowed path is."""
-        squares = np.maximum(np.abs(self.way) ** 2, np.finfo(np.float64).tiny)
-        share = ((here - self.start) * self.way.conjugate()).real / squares
-        share = np.clip(share, 0.0, 1.0)
-        points = self.start + share * self.way
-        on = self.round
-        spokes, turns = self.start[on] - self.center[on], self.sweep[on]
-        angle = np.angle((here - self.center[on]) / spokes) * np.sign(turns)
-        # Where the circle has no arc the nearer end is nearest: angles beyond the middle of the
-        # gap are before the start.
-        gap = 2.0 * np.pi - np.abs(turns)
-        angle = np.where(angle < -0.5 * gap, angle + 2.0 * np.pi, angle)
-        share[on] = np.clip(angle / np.abs(turns), 0.0, 1.0)
-        points[on] = self.center[on] + spokes * np.exp(1j * share[on] * turns)
-        row = int(np.argmin(np.where(allowed[self.path], np.abs(points - here), np.inf)))
-        return row, float(share[row])
-
-
-def _moves(path: _Path, decimals: int) -> Iterator[str]:
+def _moves(path: Path, decimals: int) -> Iterator[str]:
     """The moves from the path's start to its end."""
     grain = 10.0**-decimals
     here = _rounded(path.pieces[0].start, decimals)
