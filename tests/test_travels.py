@@ -27,8 +27,8 @@ import pytest
 import splinesdf as ss
 from splinesdf.fits.fit import fit_steps
 from splinesdf.io.enclosed import Sides
-from splinesdf.io.readers.fonts_glyphs import Kern
 from splinesdf.io.programs import Move, Way
+from splinesdf.io.readers.fonts_glyphs import Kern
 from splinesdf.io.remeasured import Worst
 from splinesdf.io.writers.machines import MACHINES
 from splinesdf.paper.tables import Row
