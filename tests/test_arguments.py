@@ -55,7 +55,10 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("dx", "dy", "degrees", "radius"), "number"),
     **dict.fromkeys(("xmin", "ymin", "xmax", "ymax"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
-    **dict.fromkeys(("plunge_feed", "pass_depth", "spindle_speed", "laser_power"), "number"),
+    **dict.fromkeys(
+        ("tool_diameter", "stepover", "plunge_feed", "pass_depth", "spindle_speed", "laser_power"),
+        "number",
+    ),
     **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
     **dict.fromkeys(
@@ -128,6 +131,7 @@ GOOD: dict[str, Any] = {
     "feed": 100.0,
     "safe_height": 5.0,
     "depth": 1.0,
+    **{"tool_diameter": 0.2, "stepover": 0.1},
     **{"plunge_feed": 50.0, "pass_depth": 0.5, "spindle_speed": 12000.0, "laser_power": 255.0},
     "distance": 0.5,
     "samples": 10,

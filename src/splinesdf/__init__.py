@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from splinesdf.io.writers.milling import Milling
     from splinesdf.meshes.lattice import DistanceGrid
     from splinesdf.offsets.offset import offset
+    from splinesdf.offsets.pocket import Pocket, pocket
     from splinesdf.rasters.atlas import atlas
     from splinesdf.rasters.layout import Atlas
     from splinesdf.rasters.texture import Texture, texture
@@ -52,6 +53,7 @@ __all__ = [
     "Milling",
     "MissingExtraError",
     "OpenContourError",
+    "Pocket",
     "Progress",
     "Projection",
     "Shape",
@@ -70,6 +72,7 @@ __all__ = [
     "load",
     "offset",
     "plot",
+    "pocket",
     "project",
     "read",
     "read_all",
@@ -114,6 +117,10 @@ _MODULES = {
     "io.writers.milling": ("Milling",),
     "meshes.lattice": ("DistanceGrid",),
     "offsets.offset": ("offset",),
+    "offsets.pocket": (
+        "Pocket",
+        "pocket",
+    ),
     "rasters.atlas": ("atlas",),
     "rasters.layout": ("Atlas",),
     "rasters.texture": (

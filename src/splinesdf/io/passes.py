@@ -7,7 +7,7 @@ around as much as it; ways in and out stay where the tool may be.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -48,13 +48,22 @@ class _Measures(NamedTuple):
 
 
 def wrong_ways(
-    file: Path, milling: Milling | None, shape: Shape, frame: Frame, tolerance: float
+    file: Path,
+    milling: Milling | None,
+    shape: Shape,
+    frame: Frame,
+    tolerance: float,
+    clearing: Collection[float],
 ) -> Iterator[str]:
-    """Sentences on what is wrong with a program's words, depths, passes and ways beside these."""
+    """Sentences on what is wrong with a program's words, depths, passes and ways beside these.
+
+    ``clearing`` is `measure_file`'s.
+    """
     ways, faults = read_program(file, milling)
     yield from faults
     last = {way.contour: way for way in last_passes(ways)}
     measured = {number: _measures(way, frame, tolerance) for number, way in last.items()}
+    nearest = max((way.distance for way in ways), default=0.0)
     for way in ways:
         if way.contour not in last:
             yield f"contour {way.contour + 1} has ways into it, and no pass"
@@ -62,11 +71,15 @@ def wrong_ways(
         if last[way.contour] is way:
             continue
         points = frame.to_source(_points(way))
-        off = signed_distance(shape, points) - way.distance
-        beyond = float(np.abs(off).max())
+        exact = signed_distance(shape, points)
+        off = exact - way.distance
         if way.name == "lead":
             # Where the tool may be: farther outside, or farther inside if the shape is cut away.
             beyond = float((-off if way.distance >= 0.0 else off).max())
+            if way.distance in clearing:
+                beyond = float(exact.max()) - nearest
+        else:
+            beyond = float((off if way.distance in clearing else np.abs(off)).max())
         if not beyond <= tolerance:
             yield (
                 f"a {way.name} of contour {way.contour + 1}, at Z{way.low:g}, is {beyond:.4g} from "

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -89,6 +89,7 @@ def measure_file(
     told: Told | None = None,
     written: Sequence[Contour] = (),
     milling: Milling | None = None,
+    clearing: Collection[float] = (),
 ) -> Worst:
     """Read a file of contours back and measure it against the exact distance to the shape.
 
@@ -108,6 +109,9 @@ def measure_file(
         All that the file holds: needed where the origin is a corner of their box, or its center.
     milling : Milling, optional
         What `write` was told of a program: depths and passes are judged by it.
+    clearing : collection of float
+        Distances of curves that are nowhere nearer to the boundary, and farther elsewhere, as those
+        between the rings of a pocket.
 
     Raises
     ------
@@ -121,7 +125,7 @@ def measure_file(
     by = frame.by
     faults: tuple[str, ...] = ()
     if as_path(path).suffix.lower() in GCODE:
-        faults = tuple(wrong_ways(as_path(path), milling, shape, frame, tolerance))
+        faults = tuple(wrong_ways(as_path(path), milling, shape, frame, tolerance, clearing))
     worst, where, gap = (-1.0, math.nan), (math.nan, math.nan), 0.0
     no_extent = 0
     lines: dict[float, list[Floats]] = {}
@@ -134,7 +138,8 @@ def measure_file(
         lines.setdefault(level, []).append(frame.to_source(line))
         gap = max(gap, math.dist(line[0], line[-1]) / by)
         no_extent += float(np.ptp(line, axis=0).max()) <= _ULPS * np.spacing(np.abs(line).max())
-        found, point = _worst_of(curve, level, shape, frame)
+        sides = np.positive if level in clearing else np.abs
+        found, point = _worst_of(curve, level, shape, frame, sides)
         if not found <= worst[0]:
             worst, where = (found, level), point
     checked = [
@@ -146,6 +151,7 @@ def measure_file(
             _turn(as_path(path), level, frame.mirrored),
         )
         for level in dict.fromkeys([*map(float, distances), *lines])
+        if level not in clearing
     ]
     return Worst(
         *(worst[0], where, worst[1]),
@@ -172,15 +178,14 @@ def _turn(file: Path, distance: float, flip: bool) -> int:
 
 
 def _worst_of(
-    curve: Curve, level: float, shape: Shape, frame: Frame
+    curve: Curve, level: float, shape: Shape, frame: Frame, sides: Callable[[Floats], Floats]
 ) -> tuple[float, tuple[float, float]]:
-    """The largest deviation along a curve, and its point."""
+    """The largest deviation along a curve, and its point; above the level only, or below, too."""
 
     def off(at: Floats) -> tuple[Floats, Floats]:
         points = curve.at(at.ravel())
-        return np.abs(signed_distance(shape, frame.to_source(points)) - level).reshape(
-            at.shape
-        ), points
+        found = sides(signed_distance(shape, frame.to_source(points)) - level)
+        return found.reshape(at.shape), points
 
     at = np.linspace(0.0, float(curve.count), _SAMPLES * curve.count + 1)
     apart, _ = off(at)
