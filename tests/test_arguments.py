@@ -56,10 +56,22 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("xmin", "ymin", "xmax", "ymax"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
     **dict.fromkeys(
-        ("tool_diameter", "stepover", "plunge_feed", "pass_depth", "spindle_speed", "laser_power"),
+        (
+            "tool_diameter",
+            "stepover",
+            "ramp",
+            "lead",
+            "plunge_feed",
+            "pass_depth",
+            "spindle_speed",
+            "laser_power",
+        ),
         "number",
     ),
-    **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
+    **dict.fromkeys(("tab_width", "tab_height"), "number"),
+    **dict.fromkeys(
+        ("tabs", "nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"
+    ),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
     **dict.fromkeys(
         ("points", "distances", "control", "knots", "weights", "levels", "shell"), "array"
@@ -131,7 +143,8 @@ GOOD: dict[str, Any] = {
     "feed": 100.0,
     "safe_height": 5.0,
     "depth": 1.0,
-    **{"tool_diameter": 0.2, "stepover": 0.1},
+    **{"tool_diameter": 0.2, "stepover": 0.1, "ramp": 5.0, "lead": 1.0},
+    **{"tabs": 2, "tab_width": 1.0, "tab_height": 0.5},
     **{"plunge_feed": 50.0, "pass_depth": 0.5, "spindle_speed": 12000.0, "laser_power": 255.0},
     "distance": 0.5,
     "samples": 10,

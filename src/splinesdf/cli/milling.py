@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import reduce
 from typing import Any
 
 import click
 
 import splinesdf as ss
+from splinesdf.ground.brief import counted
 from splinesdf.io.writers.machines import MACHINES
 from splinesdf.io.writers.milling import DEFAULT_FEED, DIRECTIONS, LASER_MODES
 
@@ -29,6 +30,11 @@ _OPTIONS: dict[str, dict[str, Any]] = {
         "type": click.Choice(DIRECTIONS),
         "help": "for a spindle that turns clockwise.  [default: climb]",
     },
+    "ramp": {"type": float, "help": "go down along the contour, so many degrees steep."},
+    "lead": {"type": float, "help": "radius of arcs into contours and out, where there is room."},
+    "tabs": {"type": int, "help": "bridges that hold what is cut out, on each contour."},
+    "tab_width": {"type": float, "help": "what a tab leaves along the contour."},
+    "tab_height": {"type": float, "help": "what a tab leaves above the depth."},
     "spindle_speed": {"type": float, "help": "turns a minute: M3 S, and M5 at the end."},
     "laser_power": {"type": float, "help": "S of a beam: on along contours, and no Z at all."},
     "laser_mode": {
@@ -36,6 +42,14 @@ _OPTIONS: dict[str, dict[str, Any]] = {
         "help": "M3, or GRBL's M4.  [default: dynamic for grbl]",
     },
     "machine": {"type": click.Choice(list(MACHINES)), "help": "whose words.  [default: any]"},
+}
+
+
+# What comments begin with, and what they say of a contour, or of a pass of it.
+_SAID = {
+    "no room for a lead": "or passes without a lead in or out, which has no room",
+    "no room for more than": "or passes with fewer tabs, which have no room",
+    "ramp steeper": "or passes with a steeper ramp, as the way around is short",
 }
 
 
@@ -54,6 +68,13 @@ def milling_of(flags: Mapping[str, Any]) -> ss.Milling | None:
     """The options as `Milling`, None if none is given."""
     given = {name: flags[name] for name in _OPTIONS if flags[name] is not None}
     return ss.Milling(**given) if given else None
+
+
+def about_text(text: str) -> Iterator[str]:
+    """Say what was asked for and is not in a program, which has it in its comments."""
+    for words, what in _SAID.items():
+        if count := text.count(words):
+            yield f"{counted(count, 'contour')} {what}, see the comments of the file"
 
 
 def about_feed(milling: ss.Milling | None, units: str | None) -> str | None:

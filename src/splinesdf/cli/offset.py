@@ -11,7 +11,7 @@ import click
 import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.console import answer, answering, note, working
-from splinesdf.cli.milling import about_feed, milling_of, milling_options
+from splinesdf.cli.milling import about_feed, about_text, milling_of, milling_options
 from splinesdf.cli.pipes import OUTPUT
 from splinesdf.cli.pocket import check_tool, clear, proved
 from splinesdf.cli.shapes import (
@@ -88,6 +88,8 @@ def offset(
     tool, stepover = flags["tool_diameter"], flags["stepover"]
     check_tool(tool, stepover, outputs)
     _check_asked(distances, step, tool)
+    if flags["tabs"] and not distances:
+        raise ss.InputError("expected tabs only with --distance, got them for what is all cut away")
     source = read_shape(shape, reading)
     options: dict[str, Any] = {
         "arcs": flags["arcs"],
@@ -129,6 +131,7 @@ def offset(
     notes = [_about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
     if any(suffix in GCODE for suffix in map(_suffix, files)):
         notes.append(about_feed(options["milling"], flags["units"]))
+        notes += about_text("".join(text for name, text in texts.items() if _suffix(name) in GCODE))
     for line in filter(None, dict.fromkeys(notes)):
         note(f"note: {line}")
     passed = _keeps(report.worst_of(figures), tolerance)

@@ -170,7 +170,7 @@ def file_text(
     there, mirrors = placed(chains, suffix, placement, by)
     by *= placement.scale
     tolerance = _tolerance(chains, there, by, size, tolerance)
-    told = Options(by * tolerance, bool(asked["arcs"]), units, asked["milling"], unit, mirrors)
+    told = Options(by * tolerance, bool(asked["arcs"]), units, asked["milling"], unit, by, mirrors)
     return WRITERS[suffix](there, told)
 
 

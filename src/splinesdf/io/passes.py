@@ -6,8 +6,10 @@ around as much as it; ways in and out stay where the tool may be.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Collection, Iterator
+from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,7 +19,7 @@ from splinesdf.distance.exact import signed_distance
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.curves import curve_of
 from splinesdf.io.enclosed import flattened
-from splinesdf.io.programs import Way, last_passes, read_program
+from splinesdf.io.programs import Move, Way, last_passes, read_program
 from splinesdf.io.source_frame import Frame
 from splinesdf.io.writers.milling import Milling
 from splinesdf.shapes.shape import Shape
@@ -25,6 +27,8 @@ from splinesdf.shapes.shape import Shape
 # Polylines of one curve from two starts differ in length by less than this share, the sag of chords
 # within the tolerance.
 _LENGTHS = 0.05
+# Heights are the same within this share of the depth; tabs take this share of a contour at most.
+_HEIGHT, _TABBED = 1e-5, 0.5
 # Points along each piece of a way.
 _SAMPLES = 12
 
@@ -68,6 +72,8 @@ def wrong_ways(
         if way.contour not in last:
             yield f"contour {way.contour + 1} has ways into it, and no pass"
             continue
+        if way.name == "pass" and milling is not None:
+            yield from _wrong_tabs(way, milling, frame)
         if last[way.contour] is way:
             continue
         points = frame.to_source(_points(way))
@@ -92,6 +98,37 @@ def wrong_ways(
                 f"the pass at Z{way.low:g} of contour {way.contour + 1} does not go around what "
                 "the last one goes around"
             )
+
+
+def _wrong_tabs(way: Way, milling: Milling, frame: Frame) -> Iterator[str]:
+    """Tabs of a pass that are lost, too short or at another height, and lifts that are none."""
+    name = f"the pass at Z{way.low:g} of contour {way.contour + 1}"
+    lengths = [(_length(move), max(move.heights)) for move in way.moves]
+    top = (milling.tab_height or 0.0) - milling.depth
+    width = (milling.tab_width or 0.0) + 2.0 * frame.by * abs(way.distance)
+    fit = math.floor(_TABBED * sum(length for length, _ in lengths) / width) if width else 0
+    wanted = min(milling.tabs, fit) if way.low < top - _HEIGHT * milling.depth else 0
+    found = [
+        sum(length for length, _ in group)
+        for high, group in groupby(lengths, lambda one: one[1] > way.low + _HEIGHT * milling.depth)
+        if high
+    ]
+    if milling.laser_power is None and len(found) != wanted:
+        yield f"{name} has {len(found)} tabs, expected {wanted}"
+    wrong = [z for _, z in lengths if z > way.low and abs(z - top) > _HEIGHT * milling.depth]
+    if wanted and wrong:
+        yield f"{name} has a tab up to Z{wrong[0]:g}, expected {top:g}"
+    if wanted and found and min(found) < width * (1.0 - _LENGTHS):
+        yield f"{name} has a tab over {min(found):.6g}, expected {width:.6g}"
+
+
+def _length(move: Move) -> float:
+    if move.spoke is None:
+        return abs(move.end - move.start)
+    center = move.start + move.spoke
+    turn = cmath.phase((move.end - center) / (move.start - center))
+    turn = (-turn if move.clockwise else turn) % (2.0 * math.pi)
+    return abs(move.spoke) * (turn or 2.0 * math.pi)
 
 
 def _points(way: Way) -> Floats:

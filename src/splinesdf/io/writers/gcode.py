@@ -9,13 +9,14 @@ A cut is never without a feed: where none is asked for, a slow one is written, a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from splinesdf.contours.conics import Element, Kind
 from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import smallest_around
+from splinesdf.io.writers.entries import Room, Step, ramped, tabs_that_fit, with_tabs
 from splinesdf.io.writers.machines import MACHINES
 from splinesdf.io.writers.milling import DEFAULT_FEED, Milling
 from splinesdf.io.writers.options import Options
@@ -51,7 +52,7 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     ]
     cut = [k for k, path in enumerate(paths) if path.pieces]
     around = smallest_around([contours[k] for k in cut])
-    program = _Program(milling, options, decimals)
+    program = _Program(milling, options, decimals, contours)
     program.begin(len(paths))
     snap = _SNAP * 10.0**-decimals
     for path in ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
@@ -62,14 +63,18 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
 class _Program:
     """The lines of a program, and the feed that is in force after them."""
 
-    def __init__(self, milling: Milling, options: Options, decimals: int) -> None:
+    def __init__(
+        self, milling: Milling, options: Options, decimals: int, contours: Sequence[Contour]
+    ) -> None:
         self.milling, self.machine = milling, MACHINES[milling.machine]
         self.units = "mm" if options.units is None else options.units
         self.tolerance, self.decimals = options.tolerance, decimals
         self.lines: list[str] = []
         self.feed = _plain(milling.feed or DEFAULT_FEED[self.units])
         self.plunge = self.feed if milling.plunge_feed is None else _plain(milling.plunge_feed)
-        self.in_force = ""
+        self.in_force, self.z, self.by = "", math.nan, options.by
+        if milling.lead is not None:
+            self.room = Room(contours, options.tolerance, milling.direction == "climb")
 
     def begin(self, count: int) -> None:
         """What the program is, the modes, and the spindle."""
@@ -103,53 +108,122 @@ class _Program:
         self.lines.append(f"G0 Z{_plain(self.milling.safe_height)}")
 
     def follow(self, path: Path) -> None:
-        """One contour: there, down, along it, and up; a closed one is gone down in at its start."""
+        """One contour: there, down, along it, and up, in as many passes as are asked for."""
+        milling, depths = self.milling, self.milling.depths
+        laser = milling.laser_power is not None
         self.say(f"distance {float(path.distance) + 0.0!r}")
-        there = f"G0 {_xy(path.pieces[0].start, self.decimals)}"
+        into = self.lead(path, out=False)
+        there = f"G0 {_xy((into or path.pieces[0]).start, self.decimals)}"
         self.lines.append(there)
-        if self.milling.laser_power is not None:
-            self.lines.append(f"{self.milling.beam} S{_plain(self.milling.laser_power)}")
-            self.cut(path)
-            self.lines.append("M5")
-            return
-        depths = self.milling.depths
+        entered, away = path, False
         for k, depth in enumerate(depths):
-            if k and not path.closed:
+            if away:
                 self.lift()
                 self.lines.append(there)
-            if len(depths) > 1:
+                path = entered
+            sloping = milling.ramp is not None and path.closed and depth > 0.0
+            above = -depths[k - 1] if k else 0.0
+            named = len(depths) > 1 or milling.ramp is not None or milling.lead is not None
+            beside = into is not None or sloping
+            if named and not beside:
                 self.say(f"pass {k + 1} of {len(depths)}")
-            self.lines.append(f"G1 Z{_plain(-depth)} F{self.plunge}")
-            self.in_force = self.plunge
-            self.cut(path)
-        self.lift()
-
-    def cut(self, path: Path) -> None:
-        """The moves along a path, the first with the feed if another one is in force."""
-        for move in _moves(path, self.decimals):
-            self.lines.append(move if self.in_force == self.feed else f"{move} F{self.feed}")
-            self.in_force = self.feed
-
-
-def _moves(path: Path, decimals: int) -> Iterator[str]:
-    """The moves from the path's start to its end."""
-    grain = 10.0**-decimals
-    here = _rounded(path.pieces[0].start, decimals)
-    for part in (part for piece in path.pieces for part in piece.parts(math.pi)):
-        end = _rounded(part.end, decimals)
-        if end == here:
-            # From a point to itself would be a full circle.
-            continue
-        spoke = _spoke(part, here, end, decimals)
-        # Without cancellation: r (1 - cos(sweep / 2)).
-        bulge = 2.0 * part.radius * math.sin(0.25 * part.sweep) ** 2
-        if part.kind is Kind.LINE or bulge < 0.5 * grain or spoke == 0.0:
-            yield f"G1 {_xy(end, decimals)}"
+            if laser:
+                self.lines.append(f"{milling.beam} S{_plain(milling.laser_power or 0.0)}")
+            else:
+                self.down(above if sloping else -depth)
+            if into is not None:
+                self.say("lead in")
+                self.cut([Step(into)])
+            if sloping:
+                path = self.ramp(path, above, -depth)
+            if named and beside:
+                self.say(f"pass {k + 1} of {len(depths)}")
+            self.cut(self.tabbed(path, depth))
+            out = self.lead(path, out=True)
+            if out is not None:
+                self.say("lead out")
+                self.cut([Step(out)])
+            away = not path.closed or into is not None or out is not None
+        if laser:
+            self.lines.append("M5")
         else:
-            turn = "G2" if part.sweep < 0.0 else "G3"
-            i, j = _number(spoke.real, decimals), _number(spoke.imag, decimals)
-            yield f"{turn} {_xy(end, decimals)} I{i} J{j}"
-        here = end
+            self.lift()
+
+    def lead(self, path: Path, out: bool) -> Element | None:
+        """A way into or out of a closed path, if one is asked for and has room."""
+        if self.milling.lead is None or not path.closed:
+            return None
+        found = self.room.lead(path, self.milling.lead, out)
+        if found is None:
+            self.say(f"no room for a lead {'out' if out else 'in'}")
+        return found
+
+    def ramp(self, path: Path, above: float, below: float) -> Path:
+        """Down along the path; the rest of it is a whole way around."""
+        slope = math.tan(math.radians(self.milling.ramp or 0.0))
+        steps, path, short = ramped(path, above, below, slope)
+        self.say("ramp steeper than asked: the way around is short" if short else "ramp")
+        self.cut(steps, sloping=True)
+        if self.z != below:
+            self.down(below)
+        return path
+
+    def tabbed(self, path: Path, depth: float) -> list[Step]:
+        """The path at a depth, and over its tabs, if there are some as high."""
+        milling = self.milling
+        top = (milling.tab_height or 0.0) - milling.depth
+        if not milling.tabs or not path.closed or -depth >= top:
+            return [Step(piece) for piece in path.pieces]
+        # A cutter that goes around at half its width leaves so much less.
+        width = (milling.tab_width or 0.0) + 2.0 * self.by * abs(path.distance)
+        count = tabs_that_fit(path, milling.tabs, width)
+        if count < milling.tabs:
+            self.say(f"no room for more than {count} tabs of {milling.tabs}")
+        return (
+            with_tabs(path, count, width, -depth, top)
+            if count
+            else [Step(piece) for piece in path.pieces]
+        )
+
+    def down(self, z: float) -> None:
+        """Straight down, or up to the height of a tab."""
+        self.lines.append(f"G1 Z{_plain(z)} F{self.plunge}")
+        self.in_force, self.z = self.plunge, z
+
+    def cut(self, steps: Sequence[Step], sloping: bool = False) -> None:
+        """The moves along pieces; each with a feed if another one is in force.
+
+        A step's height is that of its end if it is sloping, else all its own.
+        """
+        here = _rounded(steps[0].piece.start, self.decimals)
+        feed = self.plunge if sloping else self.feed
+        for step in steps:
+            if not sloping and step.z is not None and step.z != self.z:
+                self.down(step.z)
+            for part in step.piece.parts(math.pi):
+                end = _rounded(part.end, self.decimals)
+                if end == here:
+                    # From a point to itself would be a full circle.
+                    continue
+                move = _move(part, here, end, self.decimals)
+                if sloping and step.z is not None:
+                    self.z = step.z
+                    x_y, *rest = move.split(" I")
+                    move = " I".join([f"{x_y} Z{_plain(float(f'{step.z:.6g}'))}", *rest])
+                self.lines.append(move if self.in_force == feed else f"{move} F{feed}")
+                self.in_force, here = feed, end
+
+
+def _move(part: Element, here: complex, end: complex, decimals: int) -> str:
+    """A line, or an arc of half a turn at most, between rounded ends."""
+    spoke = _spoke(part, here, end, decimals)
+    # Without cancellation: r (1 - cos(sweep / 2)).
+    bulge = 2.0 * part.radius * math.sin(0.25 * part.sweep) ** 2
+    if part.kind is Kind.LINE or bulge < 0.5 * 10.0**-decimals or spoke == 0.0:
+        return f"G1 {_xy(end, decimals)}"
+    turn = "G2" if part.sweep < 0.0 else "G3"
+    i, j = _number(spoke.real, decimals), _number(spoke.imag, decimals)
+    return f"{turn} {_xy(end, decimals)} I{i} J{j}"
 
 
 def _spoke(part: Element, here: complex, end: complex, decimals: int) -> complex:

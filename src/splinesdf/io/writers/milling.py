@@ -8,11 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import as_floats, finite, positive, shown
+from splinesdf.ground.arrays import as_floats, finite, positive, shown, whole
 from splinesdf.io.writers.machines import MACHINES
 
 DIRECTIONS = ("climb", "conventional")
 LASER_MODES = ("constant", "dynamic")
+_POSITIVE = (
+    *("feed", "plunge_feed", "pass_depth", "spindle_speed", "laser_power"),
+    *("ramp", "lead", "tab_width", "tab_height"),
+)
 # The feed where none is asked for, in units per minute: slow for wood, plastic and aluminum, and
 # a program without one is refused by many controls (LinuxCNC, GRBL) at its first cut.
 DEFAULT_FEED = {"mm": 100.0, "inch": 4.0}
@@ -59,6 +63,20 @@ class Milling:
         in between, and no Z at all.
     laser_mode : {"constant", "dynamic"}, optional
         M3, or M4 of GRBL, whose power follows the speed. Default: dynamic for GRBL.
+    ramp : float, optional
+        In degrees: go down along the contour at this slope, again and again around a short one (a
+        helix on a circle), instead of straight down; by ``plunge_feed``. Around a contour that is
+        shorter than a tenth of the ramp it is steeper, and the file says so.
+    lead : float, optional
+        Radius of quarter circles into each closed contour and out of it, on the side that is cut
+        away. One that would spoil anything, by the exact distance to the contours of the same
+        distance, is shorter, or left out, and the file says so.
+    tabs : int
+        Bridges that hold what is cut out, evenly along each closed contour.
+    tab_width, tab_height : float, optional
+        What each leaves, above the depth and along the path (a little less on a bend): the tool is lifted over twice the
+        contour's distance more, as for a cutter that goes around at half its width. At a distance
+        of 0 the cutter's width is to be added.
     machine : {"any", "grbl", "linuxcnc", "marlin"}
         Whose words the program has. Of any: those that LinuxCNC, GRBL and Mach share.
 
@@ -82,9 +100,14 @@ class Milling:
     laser_power: float | None = None
     laser_mode: str | None = None
     machine: str = "any"
+    ramp: float | None = None
+    lead: float | None = None
+    tabs: int = 0
+    tab_width: float | None = None
+    tab_height: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("feed", "plunge_feed", "pass_depth", "spindle_speed", "laser_power"):
+        for name in _POSITIVE:
             if getattr(self, name) is not None:
                 positive(getattr(self, name), name.replace("_", " "))
         positive(self.safe_height, "safe height")
@@ -103,6 +126,7 @@ class Milling:
                 f"expected one of {', '.join(MACHINES)} for machine, got {self.machine!r}"
             )
         self._check_passes()
+        self._check_tabs()
         self._check_laser()
 
     def _check_passes(self) -> None:
@@ -115,6 +139,25 @@ class Milling:
                 f"expected at most {_MOST_PASSES} passes, got a depth of {self.depth:g} and "
                 f"{self.pass_depth:g} a pass: check the units"
             )
+
+    def _check_tabs(self) -> None:
+        if self.ramp is not None and (self.ramp >= 90.0 or not self.depth):
+            raise InputError(
+                f"expected a ramp below 90 degrees and a depth above 0, got {self.ramp:g} and "
+                f"{self.depth:g}"
+            )
+        whole(self.tabs, "tabs", least=0)
+        given = [value is not None for value in (self.tab_width, self.tab_height)]
+        if bool(self.tabs) != all(given) or any(given) != all(given):
+            raise InputError("expected tabs with both their width and height: give all or none")
+        if not self.tabs:
+            return
+        if self.tab_height is not None and self.tab_height > self.depth:
+            raise InputError(
+                f"expected tabs no higher than the depth {self.depth:g}, got {self.tab_height:g}"
+            )
+        if self.ramp is not None:
+            raise InputError("expected tabs or a ramp, got both: a ramp would cut tabs away")
 
     def _check_laser(self) -> None:
         if self.laser_power is None:

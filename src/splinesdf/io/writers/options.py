@@ -20,6 +20,7 @@ class Options:
     units: str | None = None
     milling: Milling | None = None
     unit: float | None = None  # millimeters of the contours' own unit, if it is known
+    by: float = 1.0  # how many of the file's units one unit of the contours' distances is
     mirrored: tuple[bool, ...] = ()  # of each contour: whether its source is seen in a mirror
 
 
