@@ -74,9 +74,9 @@ class Milling:
     tabs : int
         Bridges that hold what is cut out, evenly along each closed contour.
     tab_width, tab_height : float, optional
-        What each leaves, above the depth and along the path (a little less on a bend): the tool is lifted over twice the
-        contour's distance more, as for a cutter that goes around at half its width. At a distance
-        of 0 the cutter's width is to be added.
+        What each leaves along the path (a little less on a bend) and above the depth. The tool is
+        lifted over twice the contour's distance more, as for a cutter that goes around at half its
+        width; at a distance of 0 the cutter's width is to be added.
     machine : {"any", "grbl", "linuxcnc", "marlin"}
         Whose words the program has. Of any: those that LinuxCNC, GRBL and Mach share.
 
