@@ -186,10 +186,10 @@ class Milling:
     def depths(self) -> tuple[float, ...]:
         """How deep each pass is below the surface, the last at ``depth``."""
         if self.pass_depth is None:
-            return (self.depth,)
+            return (float(self.depth),)
         count = max(1, math.ceil(self.depth / self.pass_depth - _ROUNDING))
         inner = [float(f"{self.depth * k / count:.{_DIGITS}g}") for k in range(1, count)]
-        return (*inner, self.depth)
+        return (*inner, float(self.depth))
 
     @property
     def beam(self) -> str:
