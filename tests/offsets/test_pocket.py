@@ -107,7 +107,7 @@ def check(shape: ss.Shape, diameter: float, share: float) -> ss.Pocket:
     return found
 
 
-@pytest.mark.parametrize("share", [0.3, 0.6, 0.95])
+@pytest.mark.parametrize("share", [0.45, 0.95])
 def test_the_example_part_is_cleared(share: float) -> None:
     found = check(ss.example("part"), 6.0, share)
     # Above the radius rings leave something, as they did before.
