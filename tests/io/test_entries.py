@@ -87,6 +87,7 @@ def test_a_ramp_goes_down_along_the_contour(
         steepest = math.tan(math.radians(degrees))
         # The short slot is gone around ten times at most, and steeper.
         if "steeper" not in text:
+            assert (fall <= steepest * way * 1.01 + 1e-5).all()
             assert fall.sum() / way.sum() == pytest.approx(steepest, rel=1e-3)
     passes = [points for name, points in found if name.startswith("pass")]
     assert all(np.ptp(points[points[:, 2] <= points[:, 2].min(), 2]) == 0.0 for points in passes)
@@ -187,6 +188,9 @@ TABS = {"tabs": 3, "tab_width": 2.0, "tab_height": 1.0}
         ({"lead": 2.0}, r"^(\(lead in\)\n)", r"\1G1 X30 Y-30\n", "a lead of contour"),
         ({"lead": 2.0}, r"^(\(lead out\)\n)", r"\1G1 X30 Y-30\n", "a lead of contour"),
         ({"ramp": 9.0}, r"^(\(ramp\)\n)", r"\1G1 X30 Y-30\n", "a ramp of contour"),
+        ({"ramp": 9.0}, r"^G1 Z0 F300$", "G1 Z-1 F300", "begins at Z-1, expected 0"),
+        ({"ramp": 9.0}, r"^\(ramp\)\n(.*\n)*?(?=\(pass)", "G1 Z-3 F300\n", "has no ramp"),
+        ({"ramp": 3.0}, r"^(\(ramp\)\n\S+ \S+ \S+ Z)\S+", r"\1-2.9", "steeper than 3 degrees"),
         (TABS, r"^G1 Z-2 F300\n", "", "has 2 tabs, expected 3"),
         (TABS, r"^G1 Z-2 F300\n", "G1 Z-2.5 F300\n", "has a tab up to Z-2.5, expected -2"),
     ],

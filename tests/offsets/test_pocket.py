@@ -150,6 +150,20 @@ def test_sharp_corners_are_cleared_wherever_they_lie(
     assert deep <= 5e-3
 
 
+def test_what_is_left_is_on_the_left_of_the_paths_through_it() -> None:
+    """As what is cut away is on the left of walls and rings: so climb milling is one for all."""
+    found = ss.pocket(ss.example("part"), 6.0, 5.0, tolerance=0.01)
+    others = ends_along([*found.wall, *found.rings], 0.02, 1e-3)
+    for contour in found.extra:
+        line = contour.points(1e-3)
+        ahead = np.diff(line, axis=0)
+        k = int(np.argmax(np.hypot(*ahead.T)))
+        left = np.array([-ahead[k, 1], ahead[k, 0]]) / np.hypot(*ahead[k])
+        middle = 0.5 * (line[k] + line[k + 1])
+        sides = cKDTree(others).query([middle + 0.05 * left, middle - 0.05 * left])[0]
+        assert sides[0] > sides[1] + 0.02
+
+
 def test_the_check_of_a_file_sees_what_is_left(tmp_path: Path) -> None:
     """All paths are right, and those between rings are lost: only what is left tells."""
     shape = ss.example("part")

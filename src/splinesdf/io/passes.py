@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
@@ -29,6 +29,8 @@ from splinesdf.shapes.shape import Shape
 _LENGTHS = 0.05
 # Heights are the same within this share of the depth; tabs take this share of a contour at most.
 _HEIGHT, _TABBED = 1e-5, 0.5
+# A ramp goes so often around a contour at most, and is steeper around a shorter one.
+_TURNS = 10
 # Points along each piece of a way.
 _SAMPLES = 12
 
@@ -67,6 +69,8 @@ def wrong_ways(
     yield from faults
     last = {way.contour: way for way in last_passes(ways)}
     measured = {number: _measures(way, frame, tolerance) for number, way in last.items()}
+    if milling is not None and milling.ramp is not None:
+        yield from _wrong_ramps([way for way in ways if way.contour in last], last, milling)
     nearest = max((way.distance for way in ways), default=0.0)
     for way in ways:
         if way.contour not in last:
@@ -98,6 +102,34 @@ def wrong_ways(
                 f"the pass at Z{way.low:g} of contour {way.contour + 1} does not go around what "
                 "the last one goes around"
             )
+
+
+def _wrong_ramps(ways: Sequence[Way], last: Mapping[int, Way], milling: Milling) -> Iterator[str]:
+    """Passes that are not entered by a ramp from the one above, or by one steeper than allowed."""
+    slope = math.tan(math.radians(milling.ramp or 0.0))
+    above: dict[int, float] = {}
+    ramp: Way | None = None
+    for way in ways:
+        if way.name == "ramp":
+            ramp = way
+        if way.name != "pass":
+            continue
+        top, off = above.get(way.contour, 0.0), _HEIGHT * milling.depth
+        above[way.contour] = way.low
+        name = f"the pass at Z{way.low:g} of contour {way.contour + 1}"
+        if ramp is None or ramp.contour != way.contour or abs(ramp.low - way.low) > off:
+            yield f"{name} has no ramp"
+        elif abs(ramp.moves[0].heights[0] - top) > off:
+            yield f"the ramp of {name} begins at Z{ramp.moves[0].heights[0]:g}, expected {top:g}"
+        else:
+            whole = sum(map(_length, last[way.contour].moves))
+            allowed = max(slope, (top - way.low) / (_TURNS * whole)) * (1.0 + _LENGTHS)
+            steep = [
+                move.heights[0] - move.heights[1] - allowed * _length(move) for move in ramp.moves
+            ]
+            if max(steep) > off:
+                yield f"the ramp of {name} is steeper than {milling.ramp:g} degrees"
+        ramp = None
 
 
 def _wrong_tabs(way: Way, milling: Milling, frame: Frame) -> Iterator[str]:
