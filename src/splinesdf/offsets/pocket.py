@@ -25,6 +25,7 @@ from splinesdf.contours.contour import Contour, evaluate
 from splinesdf.distance.exact import signed_distance
 from splinesdf.errors import InputError, SplineSDFError
 from splinesdf.ground.arrays import positive
+from splinesdf.ground.brief import brief, counted
 from splinesdf.ground.progress import Report, checked_report, tell
 from splinesdf.offsets.offset import offset
 from splinesdf.shapes.shape import Shape, check_shape
@@ -63,13 +64,27 @@ class Pocket:
     >>> clearing = ss.pocket(square, 6, 5.6)
     >>> [round(contour.distance, 9) for contour in clearing.rings]
     [-8.6, -14.2, -19.8]
-    >>> len(clearing.extra), len(list(clearing))
-    (12, 16)
+    >>> clearing
+    <Pocket: 1 path along walls, 3 rings, 12 between>
+    >>> len(clearing)
+    16
     """
 
     wall: tuple[Contour, ...]
     rings: tuple[Contour, ...]
     extra: tuple[Contour, ...]
+
+    def __repr__(self) -> str:
+        return brief(
+            "Pocket",
+            "",
+            f"{counted(len(self.wall), 'path')} along walls",
+            counted(len(self.rings), "ring"),
+            f"{len(self.extra)} between",
+        )
+
+    def __len__(self) -> int:
+        return len(self.wall) + len(self.rings) + len(self.extra)
 
     def __iter__(self) -> Iterator[Contour]:
         """All paths: those between rings, rings, walls; `write` chooses the order itself."""
