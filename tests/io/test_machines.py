@@ -144,6 +144,7 @@ PASS = r"^\(pass 2 of 3\)\n.*?(?=^\(pass 3)"
         (lambda text: dropped(text, r"^\(pass 3 of 3\)\n.*?(?=^G0 Z)", 1), "to Z-2, expected -3"),
         (lambda text: dropped(text, r"^\(pass 1 of 3\)\n.*?(?=^\(pass 2)", 0), "from Z0 to Z-2"),
         (lambda text: text.replace("G1 Z-3 ", "G1 Z-2.9 "), "to Z-2.9, expected -3"),
+        (lambda text: text.replace("G1 Z-1 ", "G1 Z-4 F9\nG1 Z-1 ", 1), "goes down to Z-4"),
         (lambda text: re.sub(r" F\d+", "", text), "cuts without a feed"),
         (lambda text: dropped(text, r"^G0 Z5\n", 1), "goes quickly through the material"),
         # One move of an earlier pass is lost, or there twice.

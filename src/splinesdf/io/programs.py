@@ -60,7 +60,7 @@ class Reader:
         self.here, self.z, self.contour = 0j, math.nan, -1
         self.distance, self.feed, self.lit = math.nan, math.nan, False
         self.open: Way | None = None
-        self.turns: set[float] = set()
+        self.low = math.inf
         for number, line in enumerate(text.splitlines(), start=1):
             for found in _COMMENT.finditer(line):
                 self.read_comment(found[1] or found[2] or "")
@@ -101,6 +101,7 @@ class Reader:
         else:
             self.cut(move, end, z, values, in_plane, number)
         self.here, self.z = end, z
+        self.low = min(self.low, z)
 
     @staticmethod
     def _of(way: Way) -> tuple[float, int, str]:
@@ -133,6 +134,10 @@ def read_program(file: Path, milling: Milling | None) -> tuple[list[Way], list[s
     """The ways of a program, and what is wrong with its words and depths."""
     laser = milling is not None and milling.laser_power is not None
     reader = Reader(file.read_text(encoding="utf-8"), laser)
+    if milling is not None and reader.low < -milling.depth * (1.0 + _PRINTED):
+        reader.faults.append(
+            f"the tool goes down to Z{reader.low:g}, expected {-milling.depth:g} at most"
+        )
     faults = [*reader.faults, *_wrong_depths(reader.ways, milling or Milling(), milling is None)]
     return reader.ways, faults
 
