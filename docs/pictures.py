@@ -135,9 +135,11 @@ def pocket() -> None:
     plot_contours(names["wall"], ax, color=OUTSIDE)
     for ring in names["rings"]:
         plot_contours([ring], ax, color=INSIDE)
+    for path in names["extra"]:
+        plot_contours([path], ax, color="#2a8f5b")
     for piece in names["pieces"]:
         ax.fill(*np.array(piece.exterior.coords).T, color=INK)
-    ax.set_title("orange: along walls; blue: rings; black: what stays in corners", fontsize=9)
+    ax.set_title("orange: along walls; blue: rings; green: between; black: what stays", fontsize=9)
     save(figure, "pocket.png")
 
 

@@ -55,7 +55,23 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("dx", "dy", "degrees", "radius"), "number"),
     **dict.fromkeys(("xmin", "ymin", "xmax", "ymax"), "number"),
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
-    **dict.fromkeys(("nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"),
+    **dict.fromkeys(
+        (
+            "tool_diameter",
+            "stepover",
+            "ramp",
+            "lead",
+            "plunge_feed",
+            "pass_depth",
+            "spindle_speed",
+            "laser_power",
+        ),
+        "number",
+    ),
+    **dict.fromkeys(("tab_width", "tab_height"), "number"),
+    **dict.fromkeys(
+        ("tabs", "nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"
+    ),
     **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
     **dict.fromkeys(
         ("points", "distances", "control", "knots", "weights", "levels", "shell"), "array"
@@ -73,7 +89,8 @@ KINDS: dict[str, str] = {
             *("y_down", "notes", "loops", "sections", "x", "y", "mesh", "made", "closed", "parent"),
             *("function", "starts", "split", "columns", "rows", "spline", "ax", "result", "filled"),
             *("spline_or_mesh", "figure", "curve", "source", "characters"),
-            *("progress", "holes", "other", "options", "factor", "side", "corners"),
+            *("progress", "holes", "other", "options", "factor", "machine", "laser_mode"),
+            *("side", "corners"),
         ),
         "other",
     ),
@@ -128,6 +145,9 @@ GOOD: dict[str, Any] = {
     "feed": 100.0,
     "safe_height": 5.0,
     "depth": 1.0,
+    **{"tool_diameter": 0.2, "stepover": 0.1, "ramp": 5.0, "lead": 1.0},
+    **{"tabs": 2, "tab_width": 1.0, "tab_height": 0.5},
+    **{"plunge_feed": 50.0, "pass_depth": 0.5, "spindle_speed": 12000.0, "laser_power": 255.0},
     "distance": 0.5,
     "samples": 10,
     "max_steps": 3,

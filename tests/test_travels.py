@@ -26,9 +26,12 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.fits.fit import fit_steps
+from splinesdf.io.clearance import Cleared
 from splinesdf.io.enclosed import Sides
+from splinesdf.io.programs import Move, Way
 from splinesdf.io.readers.fonts_glyphs import Kern
 from splinesdf.io.remeasured import Worst
+from splinesdf.io.writers.machines import MACHINES
 from splinesdf.paper.tables import Row
 from tests.named_shapes import gamma
 
@@ -141,7 +144,12 @@ def examples() -> dict[type, Any]:
         ss.texture(shape, 5, range=0.1),
         dataclasses.replace(ss.atlas({"limaçon": shape}, size=8), kerning=(Kern("A", "V", -0.1),)),
         ss.offset(shape, [-0.02, 0.1], tolerance=1e-4),
+        ss.pocket(shape, 0.1, 0.05, tolerance=1e-3),
+        Cleared(100, -0.1, (1.0, 2.0)),
         ss.Milling(feed=100.0),
+        MACHINES["grbl"],
+        Move(0j, 1 + 0j, (0.0, -1.0)),
+        Way(-2.0, 0, moves=[Move(0j, 1 + 0j, (0.0, -1.0))]),
         ss.Progress("offset by 1", 1, 2),
         ss.medial_axis(shape, 0.01),
         ss.thickness(ss.Shape.rectangle(0, 0, 4, 2)),

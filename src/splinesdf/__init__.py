@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from splinesdf.ground.progress import Progress
     from splinesdf.io.input import example, read, read_all
     from splinesdf.io.output import write
-    from splinesdf.io.writers.options import Milling
+    from splinesdf.io.writers.milling import Milling
     from splinesdf.medial.axis import MedialAxis
     from splinesdf.medial.edge import AxisEdge
     from splinesdf.medial.thickness import (
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from splinesdf.medial.tracing import medial_axis
     from splinesdf.meshes.lattice import DistanceGrid
     from splinesdf.offsets.offset import offset
+    from splinesdf.offsets.pocket import Pocket, pocket
     from splinesdf.rasters.atlas import atlas
     from splinesdf.rasters.layout import Atlas
     from splinesdf.rasters.texture import Texture, texture
@@ -68,6 +69,7 @@ __all__ = [
     "MissingExtraError",
     "Narrow",
     "OpenContourError",
+    "Pocket",
     "Progress",
     "Projection",
     "Shape",
@@ -89,6 +91,7 @@ __all__ = [
     "medial_axis",
     "offset",
     "plot",
+    "pocket",
     "project",
     "read",
     "read_all",
@@ -132,7 +135,6 @@ _MODULES = {
         "read_all",
     ),
     "io.output": ("write",),
-    "io.writers.options": ("Milling",),
     "medial.axis": ("MedialAxis",),
     "medial.edge": ("AxisEdge",),
     "medial.thickness": (
@@ -143,8 +145,13 @@ _MODULES = {
         "thickness",
     ),
     "medial.tracing": ("medial_axis",),
+    "io.writers.milling": ("Milling",),
     "meshes.lattice": ("DistanceGrid",),
     "offsets.offset": ("offset",),
+    "offsets.pocket": (
+        "Pocket",
+        "pocket",
+    ),
     "rasters.atlas": ("atlas",),
     "rasters.layout": ("Atlas",),
     "rasters.texture": (

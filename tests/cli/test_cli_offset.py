@@ -158,8 +158,8 @@ def test_steps_are_handed_on(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ((), "either --distance (-d) or --step, got neither"),
-        (("-d", "1", "--step", "1"), "either --distance (-d) or --step, got both"),
+        ((), "or a --tool-diameter with a --stepover, got neither"),
+        (("-d", "1", "--step", "1"), "or a --tool-diameter with a --stepover, got both"),
         (("-d", "1", "--units", "cm"), "'cm'"),
         (("-d", "1", "--units", "mm"), "units only for .dxf, .gcode, .nc, .ngc, got it for .svg"),
         (("-d", "1", "--feed", "100"), "milling only for .gcode, .nc, .ngc"),

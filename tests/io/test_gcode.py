@@ -75,6 +75,7 @@ class Machine:
             assert self.z == self.safe, "a quick way through the material"
         else:
             assert self.z == self.depth, "a cut in the air"
+            assert self.feed > 0.0, "a cut without a feed"
             self.cut(move, end, values, words)
         self.here = end
 
@@ -130,12 +131,16 @@ def test_a_program_says_how_it_is_meant(tmp_path: Path, name: str) -> None:
     assert (machine.feed, machine.depth, machine.safe) == (300.0, -1.5, 5.0)
 
 
-def test_inches_and_no_feed(tmp_path: Path) -> None:
-    machine = program(tmp_path, [circle()], units="inch")
-    assert "G20" in machine.modes
-    assert "G21" not in machine.modes
-    assert math.isnan(machine.feed)
+@pytest.mark.parametrize(("units", "feed"), [("inch", 4.0), ("mm", 100.0)])
+def test_a_slow_feed_is_written_where_none_is_asked_for(
+    tmp_path: Path, units: str, feed: float
+) -> None:
+    """A program without a feed is refused by machines; the file says that none was asked for."""
+    machine = program(tmp_path, [circle()], units=units)
+    assert {"G20", "G21"} & machine.modes == {"G20" if units == "inch" else "G21"}
+    assert machine.feed == feed
     assert machine.depth == 0.0
+    assert "(no feed was asked for" in (tmp_path / "a.nc").read_text()
 
 
 @pytest.mark.parametrize("tolerance", [1.0, 1e-2, 1e-5])

@@ -11,7 +11,7 @@ from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.io.output import write
 from splinesdf.io.remeasured import curves_in
-from splinesdf.io.writers.options import Milling
+from splinesdf.io.writers.milling import Milling
 from tests.chains import (
     circle,
     mixed_chain,

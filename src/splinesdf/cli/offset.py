@@ -11,7 +11,9 @@ import click
 import splinesdf as ss
 from splinesdf.cli import report
 from splinesdf.cli.console import answer, answering, note, working
+from splinesdf.cli.milling import about_feed, about_text, milling_of, milling_options
 from splinesdf.cli.pipes import OUTPUT
+from splinesdf.cli.pocket import check_tool, clear, proved
 from splinesdf.cli.shapes import (
     check_outputs,
     offset_tolerance_of,
@@ -27,7 +29,7 @@ from splinesdf.io.output import check_format, file_text
 from splinesdf.io.placing import CORNERS
 from splinesdf.io.remeasured import Worst, measure_file
 from splinesdf.io.source_frame import Told
-from splinesdf.io.writers.options import DIRECTIONS, UNITS, Y_UP, factor, is_used
+from splinesdf.io.writers.options import GCODE, UNITS, Y_UP, factor, is_used
 from splinesdf.offsets.offset import least_tolerance
 
 # Shares of the tolerance for the offset; the file gets the rest. DXF without --arcs is exact; in
@@ -35,7 +37,6 @@ from splinesdf.offsets.offset import least_tolerance
 # polylines (order two) need the room more than the offset's conics (order five). Larger for those:
 # more biarcs and vertices; smaller: conics that nobody sees.
 _EXACT, _MOSTLY, _LITTLE = 1.0, 0.875, 0.125
-_MILLING = ("feed", "safe_height", "depth", "start", "direction")
 
 
 @click.command()
@@ -44,6 +45,8 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 @click.option("--coarse", is_flag=True, help="Allow a tolerance above a quarter of the distance.")
 @click.option("-d", "--distance", "distances", type=float, multiple=True, help="> 0: outward.")
 @click.option("--step", type=float, help="Inward, < 0: at STEP, 2 STEP, ... until nothing is left.")
+@click.option("--tool-diameter", type=float, help="Clear the inside: first ring at half of it, ...")
+@click.option("--stepover", type=float, help="... then so far from each to the next.")
 @click.option(
     *("-o", "--output", "outputs"),
     required=True,
@@ -58,15 +61,7 @@ _MILLING = ("feed", "safe_height", "depth", "start", "direction")
 @click.option("--scale", type=float, default=1.0, help="Enlarge the numbers of the files.")
 @click.option("--origin", help="What becomes 0,0: lower-left, center, or a point X,Y of SHAPE.")
 @click.option("--flip/--no-flip", default=None, help="Mirror y, or not.  [as the file's axis asks]")
-@click.option("--feed", type=float, help="G-code: speed of cutting, in units a minute.")
-@click.option("--safe-height", type=float, help="G-code: Z between contours.  [default: 5]")
-@click.option("--depth", type=float, help="G-code: how deep to cut below Z = 0.  [default: 0]")
-@click.option("--start", type=float, nargs=2, help="G-code: X Y, begin near here.  [default: 0 0]")
-@click.option(
-    "--direction",
-    type=click.Choice(DIRECTIONS),
-    help="G-code: for a spindle that turns clockwise.  [default: climb]",
-)
+@milling_options
 @click.option(
     "--check",
     is_flag=True,
@@ -82,7 +77,7 @@ def offset(
     outputs: tuple[str, ...],
     **flags: Any,
 ) -> None:
-    """Write the trimmed offsets of SHAPE, at distances or in steps.
+    """Write the trimmed offsets of SHAPE, at distances, in steps, or so that a tool clears it.
 
     What is written is within the tolerance of the distances, whatever the format. Lengths are in
     the shape's unit; DXF and G-code are converted if the shape says how long that is. They have y
@@ -90,21 +85,22 @@ def offset(
     is moved to 0,0, all is converted, and scaled. Several files (-o a.dxf -o a.svg) hold the same
     contours, and each takes the options that its format can use.
     """
-    if bool(distances) == (step is not None):
-        got = "both" if distances else "neither"
-        raise ss.InputError(f"expected either --distance (-d) or --step, got {got}: give one")
+    tool, stepover = flags["tool_diameter"], flags["stepover"]
+    check_tool(tool, stepover, outputs)
+    _check_asked(distances, step, tool)
+    if flags["tabs"] and not distances:
+        raise ss.InputError("expected tabs only with --distance, got them for what is all cut away")
     source = read_shape(shape, reading)
-    given = {name: flags[name] for name in _MILLING if flags[name] is not None}
     options: dict[str, Any] = {
         "arcs": flags["arcs"],
         "units": flags["units"],
-        "milling": ss.Milling(**given) if given else None,
+        "milling": milling_of(flags),
         "scale": flags["scale"],
         "origin": _origin(flags["origin"]),
         "flip": flags["flip"],
     }
     files = _files(shape, outputs, options)
-    asked = distances if step is None else (step,)
+    asked = (step,) if step is not None else distances or (-0.5 * tool, -stepover)
     tolerance = offset_tolerance_of(source, asked, tolerance, coarse=flags["coarse"])
     # What several files hold is the same, so it is what the least exact of them has room for.
     share = min(_share(suffix, flags["arcs"]) for suffix in map(_suffix, files))
@@ -115,7 +111,12 @@ def offset(
             f"above the rounding of the coordinates, got {tolerance:.4g}: raise it, or move the "
             "shape nearer to the origin"
         )
-    contours = _contours(source, distances, step, tolerance, share)
+    paths = None
+    if tool is None:
+        contours = _contours(source, distances, step, tolerance, share)
+    else:
+        paths = clear(source, 0.5 * tool, stepover, tolerance, share)
+        contours = list(paths)
     rest = (1.0 - share) * tolerance
     # All are made before one is written: what cannot be made leaves no file without the others.
     texts = {
@@ -124,19 +125,27 @@ def offset(
     }
     for output, text in texts.items():
         write_text(output, text)
-    distances = distances or tuple(dict.fromkeys(c.distance for c in contours))
+    leveled = contours if paths is None else [*paths.wall, *paths.rings]
+    distances = distances or tuple(dict.fromkeys(c.distance for c in leveled))
     figures = report.offset_figures(source, contours, distances)
     notes = [_about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
+    if any(suffix in GCODE for suffix in map(_suffix, files)):
+        notes.append(about_feed(options["milling"], flags["units"]))
+        notes += about_text("".join(text for name, text in texts.items() if _suffix(name) in GCODE))
     for line in filter(None, dict.fromkeys(notes)):
         note(f"note: {line}")
     passed = _keeps(report.worst_of(figures), tolerance)
     checked: list[tuple[str, Worst]] = []
     if flags["check"]:
         # At the step after the last nothing is to be left.
-        ended = () if step is None else ((len(distances) + 1) * step,)
+        after = (len(distances) + 1) * (step or 0.0)
+        if paths is not None:
+            after = -0.5 * tool - len(distances) * stepover
+        levels = (*distances, after) if after else distances
         for output, used in files.items():
-            told = Told(**{name: used[name] for name in Told._fields if name in used})
-            worst = _measured(output, source, contours, (*distances, *ended), tolerance, told)
+            worst = _measured(output, source, contours, levels, tolerance, used)
+            if worst is not None and paths is not None:
+                worst = proved(worst, output, source, paths, tolerance, _told(used))
             passed &= worst is not None and _is_complete(worst, contours, tolerance)
             checked += [] if worst is None else [(output, worst)]
 
@@ -156,6 +165,17 @@ def offset(
     answer(told_all, show)
     if not passed:
         raise click.exceptions.Exit(1)
+
+
+def _check_asked(distances: tuple[float, ...], step: float | None, tool: float | None) -> None:
+    """Refuse all but one way to say which offsets."""
+    given = [bool(distances), step is not None, tool is not None]
+    if sum(given) != 1:
+        got = ("neither", "", "both", "all")[sum(given)]
+        raise ss.InputError(
+            "expected either --distance (-d) or --step, or a --tool-diameter with a --stepover, "
+            f"got {got}: give one"
+        )
 
 
 def _origin(text: str | None) -> str | tuple[float, ...] | None:
@@ -286,16 +306,27 @@ def _measured(
     contours: list[ss.Contour],
     distances: tuple[float, ...],
     tolerance: float,
-    told: Told,
+    used: dict[str, Any],
 ) -> Worst | None:
     """Measure the file again, or say why it cannot be measured."""
-    every = sorted({*(float(contour.distance) for contour in contours), *distances})
+    told = _told(used)
+    every = {float(contour.distance) for contour in contours}
+    levels, others = sorted({*every, *distances}), every - {*distances}
     try:
         with working(f"reading {Path(output).name} back"):
-            return measure_file(output, source, every, tolerance, told, contours)
+            return measure_file(
+                *(output, source, levels, tolerance, told, contours),
+                milling=used.get("milling"),
+                clearing=others,
+            )
     except ss.InputError as error:  # what was written is not what it should be
         _complain(str(error))
         return None
+
+
+def _told(used: dict[str, Any]) -> Told:
+    """How a file was placed."""
+    return Told(**{name: used[name] for name in Told._fields if name in used})
 
 
 def _is_complete(worst: Worst, contours: list[ss.Contour], tolerance: float) -> bool:
@@ -307,6 +338,8 @@ def _is_complete(worst: Worst, contours: list[ss.Contour], tolerance: float) -> 
         _complain(f"expected closed curves, got one whose ends are {worst.gap:.4g} apart")
     if worst.points:
         _complain(f"expected curves with an extent, got {worst.points} that are points")
+    for fault in worst.faults:
+        _complain(fault)
     for sides in worst.sides:
         if sides.wrong:
             _complain(report.wrong_sides(sides))

@@ -17,7 +17,8 @@ from splinesdf.ground.paths import as_path
 from splinesdf.io.fields import FIELDS, write_field
 from splinesdf.io.placing import Placement, placed
 from splinesdf.io.writers import WRITERS
-from splinesdf.io.writers.options import Milling, Options, check_options, factor
+from splinesdf.io.writers.milling import Milling
+from splinesdf.io.writers.options import Options, check_options, factor
 from splinesdf.shapes.shape import Shape
 from splinesdf.splines.spline import SplineSDF
 
@@ -169,7 +170,7 @@ def file_text(
     there, mirrors = placed(chains, suffix, placement, by)
     by *= placement.scale
     tolerance = _tolerance(chains, there, by, size, tolerance)
-    told = Options(by * tolerance, bool(asked["arcs"]), units, asked["milling"], unit, mirrors)
+    told = Options(by * tolerance, bool(asked["arcs"]), units, asked["milling"], unit, by, mirrors)
     return WRITERS[suffix](there, told)
 
 

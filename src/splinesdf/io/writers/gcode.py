@@ -1,30 +1,26 @@
 """Contours as G-code: straight moves (G1) and circular ones (G2, G3) of a milling machine.
 
-    contours ─y up, lines and circular arcs, turned to the direction asked─→ paths
-             ─the nearest one next of those in which nothing is left to cut, entered at its
-              nearest point─→ moves
+    contours ─y up, lines and circular arcs─→ paths in order (`paths`)
+             ─the words of the machine (`machines`), passes, feeds, spindle or laser─→ program
 
-What is cut out of the sheet may move: so holes come before the outline around them.
-
-The words are those that LinuxCNC, GRBL, Fanuc and their kin share: G17 (the XY plane), G20 or G21
-(inch, mm), G40 (no radius compensation), G90 (absolute ends), G91.1 (I and J from the arc's
-start), G94 (feed per minute), M2 (the end). The spindle is left to who mounts the tool.
+A cut is never without a feed: where none is asked for, a slow one is written, and said.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
-from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind
 from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import smallest_around
-from splinesdf.ground.arrays import Bools
-from splinesdf.io.writers.options import Milling, Options
+from splinesdf.io.writers.entries import Room, Step, ramped, tabs_that_fit, with_tabs
+from splinesdf.io.writers.machines import MACHINES
+from splinesdf.io.writers.milling import DEFAULT_FEED, Milling
+from splinesdf.io.writers.options import Options
+from splinesdf.io.writers.paths import Path, ordered, path_of
 
 # The last digit is a hundredth to a thousandth of the tolerance, and never coarser than this many
 # decimals: controls refuse arcs whose two radii differ by 0.005 mm or 0.0005 inch.
@@ -34,182 +30,200 @@ _FEWEST_DECIMALS = 4
 _SHARE = 0.98
 # More digits than doubles have say nothing.
 _DIGITS = 15
-# Arcs of a smaller sweep (radians) are straight where the nearest point is looked for: within 1e-7
-# of their chords.
-_FLAT = 1e-6
 # Nearer to an element's end than so many last digits a path is entered in that end: a shorter
 # first or last move would be all rounding.
 _SNAP = 100.0
 
 
-@dataclass(frozen=True)
-class _Path:
-    """One contour as the tool follows it."""
-
-    distance: float
-    closed: bool
-    pieces: list[Element]
-
-    def entered(self, at: int, share: float) -> _Path:
-        """The same, closed, from a point of one of its pieces on."""
-        piece = self.pieces[at]
-        if piece.is_full:
-            start = piece.cut([share])[0].end if 0.0 < share < 1.0 else piece.start
-            whole = Element(
-                *(piece.kind, piece.first, piece.count, start, start),
-                *(piece.center, piece.radius, piece.sweep),
-            )
-            return _Path(self.distance, True, [whole])
-        if share in (0.0, 1.0):
-            at = (at + int(share)) % len(self.pieces)
-            return _Path(self.distance, True, self.pieces[at:] + self.pieces[:at])
-        before, after = piece.cut([share])
-        pieces = [after, *self.pieces[at + 1 :], *self.pieces[:at], before]
-        return _Path(self.distance, True, pieces)
-
-
 def gcode_text(contours: Sequence[Contour], options: Options) -> str:
-    """A program that follows each contour once, at one depth, and lifts the tool in between.
+    """A program that follows each contour, in passes if asked, and lifts the tool in between.
 
     Arcs turn by half at most; a contour that is a full circle is two of them. What is shorter
     than the last digit is left out, what bulges by less than half of it is straight.
     """
     milling = Milling() if options.milling is None else options.milling
-    units = "mm" if options.units is None else options.units
     largest = max(float(np.abs(contour.arcs).max()) for contour in contours)
     decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(options.tolerance)) + _DECIMALS_BEYOND)
     decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
     mirrored = options.mirrored or (False,) * len(contours)
     paths = [
-        _path(contour, _SHARE * options.tolerance, milling.direction, seen)
+        path_of(contour, _SHARE * options.tolerance, milling.direction, seen)
         for contour, seen in zip(contours, mirrored, strict=True)
     ]
     cut = [k for k, path in enumerate(paths) if path.pieces]
     around = smallest_around([contours[k] for k in cut])
-    safe, plunge = f"G0 Z{_plain(milling.safe_height)}", f"G1 Z{_plain(-milling.depth)}"
-    if milling.feed is not None:
-        plunge += f" F{_plain(milling.feed)}"
-    lines = [
-        f"(splinesdf: {len(paths)} contours, lengths in {units})",
-        f"(within {options.tolerance:.6g}, {milling.direction} milling)",
-        "(start the spindle before: clockwise, seen from above)",
-        f"G17 {'G21' if units == 'mm' else 'G20'} G40 G90 G91.1 G94",
-        safe,
-    ]
+    program = _Program(milling, options, decimals, contours)
+    program.begin(len(paths))
     snap = _SNAP * 10.0**-decimals
-    for path in _ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
-        start = path.pieces[0].start
-        lines += [f"(distance {float(path.distance) + 0.0!r})", f"G0 {_xy(start, decimals)}"]
-        lines += [plunge, *_moves(path, decimals), safe]
-    return "\n".join([*lines, "M2"]) + "\n"
+    for path in ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
+        program.follow(path)
+    return program.ended()
 
 
-def _path(contour: Contour, tolerance: float, direction: str, mirrored: bool) -> _Path:
-    """The contour with what stays on the right (climb) or on the left."""
-    pieces = arc_elements(contour, tolerance=tolerance)
-    # Contours have the side nearer to the inside on their left, where x turns into y; a mirror
-    # changes sides. The shape is inside, and it stays if the way is around it.
-    inside_on_left = not mirrored
-    stays_on_left = inside_on_left == (contour.distance >= 0.0)
-    if stays_on_left == (direction == "climb"):
-        pieces = [
-            Element(p.kind, p.first, p.count, p.end, p.start, p.center, p.radius, -p.sweep)
-            for p in reversed(pieces)
-        ]
-    return _Path(contour.distance, contour.closed, pieces)
+class _Program:
+    """The lines of a program, and the feed that is in force after them."""
 
+    def __init__(
+        self, milling: Milling, options: Options, decimals: int, contours: Sequence[Contour]
+    ) -> None:
+        self.milling, self.machine = milling, MACHINES[milling.machine]
+        self.units = "mm" if options.units is None else options.units
+        self.tolerance, self.decimals = options.tolerance, decimals
+        self.lines: list[str] = []
+        self.feed = _plain(milling.feed or DEFAULT_FEED[self.units])
+        self.plunge = self.feed if milling.plunge_feed is None else _plain(milling.plunge_feed)
+        self.in_force, self.z, self.by = "", math.nan, options.by
+        if milling.lead is not None:
+            self.room = Room(contours, options.tolerance, milling.direction == "climb")
 
-def _ordered(
-    paths: Sequence[_Path], around: Sequence[int], here: complex, snap: float
-) -> Iterator[_Path]:
-    """The paths, always the one next that is nearest to where the tool is then.
+    def begin(self, count: int) -> None:
+        """What the program is, the modes, and the spindle."""
+        milling = self.milling
+        self.say(f"splinesdf: {count} contours, lengths in {self.units}")
+        self.say(f"within {self.tolerance:.6g}, {milling.direction} milling")
+        if milling.feed is None:
+            self.say(f"no feed was asked for: {self.feed} a minute, which is slow")
+        if milling.laser_power is None and milling.spindle_speed is None:
+            self.say("start the spindle before: clockwise, seen from above")
+        words = {"units": "G21" if self.units == "mm" else "G20"}
+        words["tolerance"] = _plain(float(f"{self.tolerance:.6g}"))
+        self.lines += [line.format(**words) for line in self.machine.header]
+        if milling.laser_power is not None:
+            self.lines.append("M5")
+            return
+        self.lift()
+        if milling.spindle_speed is not None:
+            self.lines += filter(None, [f"M3 S{_plain(milling.spindle_speed)}", self.machine.dwell])
 
-    Only those in which nothing is left are asked; ``around`` is `smallest_around`'s.
-    """
-    near = _Near(paths)
-    left_inside = np.bincount([k for k in around if k >= 0], minlength=len(paths))
-    for _ in paths:
-        row, share = near.nearest(here, left_inside == 0)
-        chosen = int(near.path[row])
-        path, at, length = paths[chosen], int(near.piece[row]), float(near.lengths[row])
-        near = near.without(chosen)
-        if around[chosen] >= 0:
-            left_inside[around[chosen]] -= 1
-        if path.closed:
-            share = 0.0 if share * length < snap else share
-            share = 1.0 if (1.0 - share) * length < snap else share
-            path = path.entered(at, share)
-        here = path.pieces[-1].end
-        yield path
+    def ended(self) -> str:
+        """The whole text."""
+        if self.milling.spindle_speed is not None:
+            self.lines.append("M5")
+        return "\n".join([*self.lines, *self.machine.end]) + "\n"
 
+    def say(self, text: str) -> None:
+        self.lines.append(self.machine.comment.format(text))
 
-class _Near:
-    """The pieces of paths as arrays, to be asked for the nearest point; of open ones the start."""
+    def lift(self) -> None:
+        self.lines.append(f"G0 Z{_plain(self.milling.safe_height)}")
 
-    def __init__(self, paths: Sequence[_Path]) -> None:
-        rows = [
-            (i, k, piece, path.closed)
-            for i, path in enumerate(paths)
-            for k, piece in enumerate(path.pieces if path.closed else path.pieces[:1])
-        ]
-        self.path = np.array([i for i, *_ in rows])
-        self.piece = np.array([k for _, k, *_ in rows])
-        self.start = np.array([p.start for *_, p, _ in rows])
-        self.way = np.array([p.end - p.start if closed else 0j for *_, p, closed in rows])
-        self.center = np.array([p.center for *_, p, _ in rows])
-        self.sweep = np.array([p.sweep for *_, p, _ in rows])
-        # Of flatter arcs the chord is as near, and the center too far away to tell angles.
-        self.round = np.array(
-            [p.kind is Kind.CIRCLE and closed and abs(p.sweep) > _FLAT for *_, p, closed in rows]
-        )
-        radius = np.array([p.radius for *_, p, _ in rows])
-        self.lengths = np.where(self.round, radius * np.abs(self.sweep), np.abs(self.way))
-
-    def without(self, path: int) -> _Near:
-        """The same, all but one path's."""
-        result = object.__new__(_Near)
-        kept = self.path != path
-        vars(result).update({name: values[kept] for name, values in vars(self).items()})
-        return result
-
-    def nearest(self, here: complex, allowed: Bools) -> tuple[int, float]:
-        """In which row, at which share of the piece, the nearest point of an allowed path is."""
-        squares = np.maximum(np.abs(self.way) ** 2, np.finfo(np.float64).tiny)
-        share = ((here - self.start) * self.way.conjugate()).real / squares
-        share = np.clip(share, 0.0, 1.0)
-        points = self.start + share * self.way
-        on = self.round
-        spokes, turns = self.start[on] - self.center[on], self.sweep[on]
-        angle = np.angle((here - self.center[on]) / spokes) * np.sign(turns)
-        # Where the circle has no arc the nearer end is nearest: angles beyond the middle of the
-        # gap are before the start.
-        gap = 2.0 * np.pi - np.abs(turns)
-        angle = np.where(angle < -0.5 * gap, angle + 2.0 * np.pi, angle)
-        share[on] = np.clip(angle / np.abs(turns), 0.0, 1.0)
-        points[on] = self.center[on] + spokes * np.exp(1j * share[on] * turns)
-        row = int(np.argmin(np.where(allowed[self.path], np.abs(points - here), np.inf)))
-        return row, float(share[row])
-
-
-def _moves(path: _Path, decimals: int) -> Iterator[str]:
-    """The moves from the path's start to its end."""
-    grain = 10.0**-decimals
-    here = _rounded(path.pieces[0].start, decimals)
-    for part in (part for piece in path.pieces for part in piece.parts(math.pi)):
-        end = _rounded(part.end, decimals)
-        if end == here:
-            # From a point to itself would be a full circle.
-            continue
-        spoke = _spoke(part, here, end, decimals)
-        # Without cancellation: r (1 - cos(sweep / 2)).
-        bulge = 2.0 * part.radius * math.sin(0.25 * part.sweep) ** 2
-        if part.kind is Kind.LINE or bulge < 0.5 * grain or spoke == 0.0:
-            yield f"G1 {_xy(end, decimals)}"
+    def follow(self, path: Path) -> None:
+        """One contour: there, down, along it, and up, in as many passes as are asked for."""
+        milling, depths = self.milling, self.milling.depths
+        laser = milling.laser_power is not None
+        self.say(f"distance {float(path.distance) + 0.0!r}")
+        into = self.lead(path, out=False)
+        there = f"G0 {_xy((into or path.pieces[0]).start, self.decimals)}"
+        self.lines.append(there)
+        entered, away = path, False
+        for k, depth in enumerate(depths):
+            if away:
+                self.lift()
+                self.lines.append(there)
+                path = entered
+            sloping = milling.ramp is not None and path.closed and depth > 0.0
+            above = -depths[k - 1] if k else 0.0
+            named = len(depths) > 1 or milling.ramp is not None or milling.lead is not None
+            beside = into is not None or sloping
+            if named and not beside:
+                self.say(f"pass {k + 1} of {len(depths)}")
+            if laser:
+                self.lines.append(f"{milling.beam} S{_plain(milling.laser_power or 0.0)}")
+            else:
+                self.down(above if sloping else -depth)
+            if into is not None:
+                self.say("lead in")
+                self.cut([Step(into)])
+            if sloping:
+                path = self.ramp(path, above, -depth)
+            if named and beside:
+                self.say(f"pass {k + 1} of {len(depths)}")
+            self.cut(self.tabbed(path, depth))
+            out = self.lead(path, out=True)
+            if out is not None:
+                self.say("lead out")
+                self.cut([Step(out)])
+            away = not path.closed or into is not None or out is not None
+        if laser:
+            self.lines.append("M5")
         else:
-            turn = "G2" if part.sweep < 0.0 else "G3"
-            i, j = _number(spoke.real, decimals), _number(spoke.imag, decimals)
-            yield f"{turn} {_xy(end, decimals)} I{i} J{j}"
-        here = end
+            self.lift()
+
+    def lead(self, path: Path, out: bool) -> Element | None:
+        """A way into or out of a closed path, if one is asked for and has room."""
+        if self.milling.lead is None or not path.closed:
+            return None
+        found = self.room.lead(path, self.milling.lead, out)
+        if found is None:
+            self.say(f"no room for a lead {'out' if out else 'in'}")
+        return found
+
+    def ramp(self, path: Path, above: float, below: float) -> Path:
+        """Down along the path; the rest of it is a whole way around."""
+        slope = math.tan(math.radians(self.milling.ramp or 0.0))
+        steps, path, short = ramped(path, above, below, slope)
+        self.say("ramp steeper than asked: the way around is short" if short else "ramp")
+        self.cut(steps, sloping=True)
+        if self.z != below:
+            self.down(below)
+        return path
+
+    def tabbed(self, path: Path, depth: float) -> list[Step]:
+        """The path at a depth, and over its tabs, if there are some as high."""
+        milling = self.milling
+        top = (milling.tab_height or 0.0) - milling.depth
+        if not milling.tabs or not path.closed or -depth >= top:
+            return [Step(piece) for piece in path.pieces]
+        # A cutter that goes around at half its width leaves so much less.
+        width = (milling.tab_width or 0.0) + 2.0 * self.by * abs(path.distance)
+        count = tabs_that_fit(path, milling.tabs, width)
+        if count < milling.tabs:
+            self.say(f"no room for more than {count} tabs of {milling.tabs}")
+        return (
+            with_tabs(path, count, width, -depth, top)
+            if count
+            else [Step(piece) for piece in path.pieces]
+        )
+
+    def down(self, z: float) -> None:
+        """Straight down, or up to the height of a tab."""
+        self.lines.append(f"G1 Z{_plain(z)} F{self.plunge}")
+        self.in_force, self.z = self.plunge, z
+
+    def cut(self, steps: Sequence[Step], sloping: bool = False) -> None:
+        """The moves along pieces; each with a feed if another one is in force.
+
+        A step's height is that of its end if it is sloping, else all its own.
+        """
+        here = _rounded(steps[0].piece.start, self.decimals)
+        feed = self.plunge if sloping else self.feed
+        for step in steps:
+            if not sloping and step.z is not None and step.z != self.z:
+                self.down(step.z)
+            for part in step.piece.parts(math.pi):
+                end = _rounded(part.end, self.decimals)
+                if end == here:
+                    # From a point to itself would be a full circle.
+                    continue
+                move = _move(part, here, end, self.decimals)
+                if sloping and step.z is not None:
+                    self.z = step.z
+                    x_y, *rest = move.split(" I")
+                    move = " I".join([f"{x_y} Z{_plain(float(f'{step.z:.6g}'))}", *rest])
+                self.lines.append(move if self.in_force == feed else f"{move} F{feed}")
+                self.in_force, here = feed, end
+
+
+def _move(part: Element, here: complex, end: complex, decimals: int) -> str:
+    """A line, or an arc of half a turn at most, between rounded ends."""
+    spoke = _spoke(part, here, end, decimals)
+    # Without cancellation: r (1 - cos(sweep / 2)).
+    bulge = 2.0 * part.radius * math.sin(0.25 * part.sweep) ** 2
+    if part.kind is Kind.LINE or bulge < 0.5 * 10.0**-decimals or spoke == 0.0:
+        return f"G1 {_xy(end, decimals)}"
+    turn = "G2" if part.sweep < 0.0 else "G3"
+    i, j = _number(spoke.real, decimals), _number(spoke.imag, decimals)
+    return f"{turn} {_xy(end, decimals)} I{i} J{j}"
 
 
 def _spoke(part: Element, here: complex, end: complex, decimals: int) -> complex:

@@ -5,65 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import as_floats, finite, positive, shown
+from splinesdf.io.writers.milling import Milling
 
 UNITS = ("mm", "inch")
-DIRECTIONS = ("climb", "conventional")
-
-
-@dataclass(frozen=True)
-class Milling:
-    """How a milling machine is to follow contours (G-code).
-
-    Attributes
-    ----------
-    feed : float, optional
-        Speed of cutting, in units per minute (F). Default: none, so the machine keeps the one
-        that is set; some refuse to cut before one is.
-    safe_height : float
-        The height (Z) of the ways between contours, above everything.
-    depth : float
-        How deep to cut below Z = 0. At 0, the default, the tool draws on the surface.
-    start : (float, float)
-        Where the tool comes from, in the file's coordinates: the next contour is always the
-        nearest one in which nothing is left to cut, so that holes come before the outline around
-        them, entered at its nearest point.
-    direction : {"climb", "conventional"}
-        For a spindle that turns clockwise, seen from above. Climb: what stays is on the right of
-        the tool (G41's side), so an outer contour around a part is followed clockwise, a pocket's
-        counterclockwise. At a distance above 0, and at 0, the shape is what stays; below 0 it is
-        the shape that is cut away.
-
-    Examples
-    --------
-    >>> import splinesdf as ss
-    >>> ss.Milling(feed=300, depth=2).safe_height
-    5.0
-    """
-
-    feed: float | None = None
-    safe_height: float = 5.0
-    depth: float = 0.0
-    start: tuple[float, float] = (0.0, 0.0)
-    direction: str = "climb"
-
-    def __post_init__(self) -> None:
-        if self.feed is not None:
-            positive(self.feed, "feed")
-        positive(self.safe_height, "safe height")
-        depth = finite(self.depth, "depth")
-        if depth < 0.0:
-            raise InputError(f"expected a depth below the surface, 0 or more, got {depth:g}")
-        start = as_floats(self.start, "start")
-        if start.shape != (2,):
-            raise InputError(f"expected two numbers for start, got {shown(self.start)}")
-        if not np.isfinite(start).all():
-            raise InputError(f"expected a finite start, got {shown(self.start)}")
-        if self.direction not in DIRECTIONS:
-            raise InputError(f"expected climb or conventional, got {self.direction!r}")
 
 
 @dataclass(frozen=True)
@@ -75,6 +20,7 @@ class Options:
     units: str | None = None
     milling: Milling | None = None
     unit: float | None = None  # millimeters of the contours' own unit, if it is known
+    by: float = 1.0  # how many of the file's units one unit of the contours' distances is
     mirrored: tuple[bool, ...] = ()  # of each contour: whether its source is seen in a mirror
 
 
