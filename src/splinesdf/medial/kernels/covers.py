@@ -10,6 +10,7 @@ from splinesdf.arclets.kernels.nearest import room_to_search, search
 from splinesdf.arclets.tables import Searched
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel
+from splinesdf.medial.kernels.frames import NONE, ROOT
 from splinesdf.medial.tables import Walk
 
 
@@ -24,8 +25,8 @@ def places(searched: Searched, walk: Walk, points: Floats, element: Ints, at: Fl
             searched.arcs,
             (points[i, 0], points[i, 1]),
             np.inf,
-            1,
-            -1,
+            ROOT,
+            NONE,
             -1.0,
             scratch,
         )

@@ -16,7 +16,7 @@ from splinesdf.arclets.kernels.nearest import room_to_search, search
 from splinesdf.arclets.tables import Searched
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
-from splinesdf.medial.kernels.frames import frame, place_of
+from splinesdf.medial.kernels.frames import NONE, ROOT, frame, place_of
 from splinesdf.medial.tables import FIRST_BEND, FREE, KIND, Disks, Walk
 
 # Steps to the radius; the method is Newton's, ten are much. At the ceiling the disk is not used.
@@ -60,7 +60,7 @@ def disks(searched: Searched, walk: Walk, most: float, found: Ints, room: Disks)
         if bend * most > 1.0:
             r = 1.0 / bend
         found[i] = 0
-        arclet, t = -1, 0.0
+        arclet, t = NONE, 0.0
         for _ in range(_STEPS):
             scratch.nodes[0] = 0
             _, a, at = search(
@@ -68,8 +68,8 @@ def disks(searched: Searched, walk: Walk, most: float, found: Ints, room: Disks)
                 searched.arcs,
                 (x + r * nx, y + r * ny),
                 r * _EMPTY - grain,
-                1,
-                -1,
+                ROOT,
+                NONE,
                 -1.0,
                 scratch,
             )
@@ -172,8 +172,8 @@ def distances(searched: Searched, points: Floats, far: Floats) -> None:
             searched.arcs,
             (points[i, 0], points[i, 1]),
             np.inf,
-            1,
-            -1,
+            ROOT,
+            NONE,
             -1.0,
             scratch,
         )

@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import cast
+
+import numpy as np
 
 from splinesdf.arclets.kernels.arclet import derivatives, point_on
 from splinesdf.ground.jit import uncounted
 from splinesdf.medial.tables import ANGLE, FAN, KIND, OWNER, ROUND, STRAIGHT, Walk
+
+# Searches start from the root alone and pass over no arclet; no arclet is known yet. As integers of
+# a type of their own: for literals Numba would compile what is called once more.
+ROOT, NONE, FIRST = (cast(int, np.int64(k)) for k in (1, -1, 0))
 
 
 @uncounted

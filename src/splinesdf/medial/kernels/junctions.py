@@ -14,7 +14,7 @@ from splinesdf.arclets.kernels.nearest import room_to_search, search
 from splinesdf.arclets.tables import Searched
 from splinesdf.ground.arrays import Floats
 from splinesdf.ground.jit import kernel, uncounted
-from splinesdf.medial.kernels.frames import frame
+from splinesdf.medial.kernels.frames import FIRST, NONE, ROOT, frame
 from splinesdf.medial.tables import FAN, KIND, OWNER, ROUND, STRAIGHT, Arcs, Met, Walk
 
 # Steps of Newton's method, and triples of arcs that are tried for one face. At these ceilings the
@@ -49,7 +49,7 @@ def junctions(
     for f in range(guess.shape[0]):
         met.found[f] = 0
         first, count = arcs.first[f], arcs.first[f + 1] - arcs.first[f]
-        a, b, c = 0, count // 3, (2 * count) // 3
+        a, b, c = FIRST, count // 3, (2 * count) // 3
         tried = 0
         x, y, r = guess[f, 0], guess[f, 1], guess[f, 2]
         while tried < _TRIPLES:
@@ -70,7 +70,7 @@ def junctions(
                             a, b, c = 0, 1, 2
                 x, y, r = guess[f, 0], guess[f, 1], guess[f, 2]
                 continue
-            worst, least, touched = -1, r - near, 0
+            worst, least, touched = NONE, r - near, 0
             for k in range(count):
                 d = _foot(walk, arcs, first + k, x, y, met)
                 if abs(d - r) <= near:
@@ -80,7 +80,7 @@ def junctions(
             if worst < 0:
                 scratch.nodes[0] = 0
                 _, hit, _ = search(
-                    searched.tree, searched.arcs, (x, y), r - near, 1, -1, -1.0, scratch
+                    searched.tree, searched.arcs, (x, y), r - near, ROOT, NONE, -1.0, scratch
                 )
                 if hit < 0 and touched >= 3:
                     met.found[f] = touched
