@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from splinesdf import plot
+    from splinesdf.batches.batch import BatchReport, batch
+    from splinesdf.batches.item import BatchRow
     from splinesdf.contours.biarcs import as_arcs
     from splinesdf.contours.contour import Contour
     from splinesdf.distance.exact import (
@@ -44,6 +46,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = [
     "Atlas",
+    "BatchReport",
+    "BatchRow",
     "Contour",
     "DistanceGrid",
     "FitResult",
@@ -62,6 +66,7 @@ __all__ = [
     "Triangles",
     "as_arcs",
     "atlas",
+    "batch",
     "closest_point",
     "example",
     "fit",
@@ -82,6 +87,11 @@ __all__ = [
 # Where each name is. It is imported when it is first asked for: all of them take three times as
 # long as NumPy, and most programs need a few. Editors and type checkers read the imports above.
 _MODULES = {
+    "batches.batch": (
+        "BatchReport",
+        "batch",
+    ),
+    "batches.item": ("BatchRow",),
     "contours.biarcs": ("as_arcs",),
     "contours.contour": ("Contour",),
     "distance.exact": (
