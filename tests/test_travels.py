@@ -143,6 +143,7 @@ def examples() -> dict[type, Any]:
         ss.offset(shape, [-0.02, 0.1], tolerance=1e-4),
         ss.Milling(feed=100.0),
         ss.Progress("offset by 1", 1, 2),
+        ss.BatchReport((ss.BatchRow("a.svg", "a.dxf", "failed", "no such file", 0.5),)),
         shape.joints,
         shape.kinds,
         shape.bends,

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         signed_distance,
         signed_distance_grid,
     )
+    from splinesdf.distance.tiled import signed_distance_array
     from splinesdf.errors import (
         InputError,
         MissingExtraError,
@@ -79,6 +80,7 @@ __all__ = [
     "read",
     "read_all",
     "signed_distance",
+    "signed_distance_array",
     "signed_distance_grid",
     "texture",
     "write",
@@ -101,6 +103,7 @@ _MODULES = {
         "signed_distance",
         "signed_distance_grid",
     ),
+    "distance.tiled": ("signed_distance_array",),
     "errors": (
         "InputError",
         "MissingExtraError",

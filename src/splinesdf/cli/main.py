@@ -20,6 +20,7 @@ except ImportError:
     raise SystemExit(2) from None
 
 from splinesdf.cli.atlas import atlas
+from splinesdf.cli.batch import batch
 from splinesdf.cli.completion import completion
 from splinesdf.cli.console import write_on_any_terminal
 from splinesdf.cli.demo import demo
@@ -92,5 +93,5 @@ def commands() -> None:
     """
 
 
-for _command in (fit, offset, query, texture, atlas, view, paper, info, demo, completion):
+for _command in (fit, offset, batch, query, texture, atlas, view, paper, info, demo, completion):
     commands.add_command(_command)
