@@ -72,7 +72,7 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(
         ("tabs", "nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"
     ),
-    **dict.fromkeys(("degree", "samples", "max_steps"), "whole"),
+    **dict.fromkeys(("degree", "samples", "max_steps", "workers"), "whole"),
     **dict.fromkeys(
         ("points", "distances", "control", "knots", "weights", "levels", "shell"), "array"
     ),
@@ -91,6 +91,8 @@ KINDS: dict[str, str] = {
             *("spline_or_mesh", "figure", "curve", "source", "characters"),
             *("progress", "holes", "other", "options", "factor", "machine", "laser_mode"),
             *("side", "corners"),
+            *("sources", "job", "output", "reading", "writing", "scheduler", "overwrite"),
+            "chunks",
         ),
         "other",
     ),
@@ -103,6 +105,7 @@ SPECIAL = {
     ("Grid.from_lines", "y"): "array",
     ("Grid", "x"): "array",
     ("Grid", "y"): "array",
+    **dict.fromkeys((("signed_distance_array", name) for name in ("x", "y")), "array"),
     ("from_level_set", "x"): "array",
     ("from_level_set", "y"): "array",
     ("Shape.from_pieces", "loops"): "pieces",
@@ -167,6 +170,8 @@ GOOD_IN: dict[tuple[str, str], Any] = {
     ("Grid", "y"): np.array([0.0, 1.0, 2.0]),
     ("Contour", "closed"): True,
     ("Shape", "page"): (0.0, 0.0, 2.0, 3.0),
+    ("signed_distance_array", "x"): np.array([0.0, 1.0, 2.0]),
+    ("signed_distance_array", "y"): np.array([0.0, 1.0]),
     ("from_level_set", "x"): np.arange(9.0),
     ("from_level_set", "y"): np.arange(9.0),
     ("from_level_set", "values"): np.add.outer((np.arange(9.0) - 4) ** 2, (np.arange(9.0) - 4) ** 2)
@@ -187,6 +192,8 @@ def good(where: str, name: str) -> Any:
         "arcs": lambda: contour().arcs,
         "split": lambda: np.zeros(12, dtype=bool),
         "path": lambda: "out.svg",
+        # Refused when all else is checked, as to start a process takes a second.
+        **{"sources": lambda: [], "job": lambda: "write", "output": lambda: "{name}.svg"},
     }
     if where == "atlas" and name == "source":
         return {"bar": shape()}

@@ -154,6 +154,7 @@ def examples() -> dict[type, Any]:
         ss.medial_axis(shape, 0.01),
         ss.thickness(ss.Shape.rectangle(0, 0, 4, 2)),
         ss.maximal_disk(shape, points),
+        ss.BatchReport((ss.BatchRow("a.svg", "a.dxf", "failed", "no such file", 0.5),)),
         shape.joints,
         shape.kinds,
         shape.bends,

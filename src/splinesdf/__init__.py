@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from splinesdf import plot
+    from splinesdf.batches.batch import BatchReport, batch
+    from splinesdf.batches.item import BatchRow
     from splinesdf.contours.biarcs import as_arcs
     from splinesdf.contours.contour import Contour
     from splinesdf.distance.exact import (
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
         signed_distance,
         signed_distance_grid,
     )
+    from splinesdf.distance.tiled import signed_distance_array
     from splinesdf.errors import (
         AxisIncomplete,
         InputError,
@@ -58,6 +61,8 @@ __all__ = [
     "Atlas",
     "AxisEdge",
     "AxisIncomplete",
+    "BatchReport",
+    "BatchRow",
     "Contour",
     "DistanceGrid",
     "FitResult",
@@ -80,6 +85,7 @@ __all__ = [
     "Triangles",
     "as_arcs",
     "atlas",
+    "batch",
     "closest_point",
     "example",
     "fit",
@@ -96,6 +102,7 @@ __all__ = [
     "read",
     "read_all",
     "signed_distance",
+    "signed_distance_array",
     "signed_distance_grid",
     "texture",
     "thickness",
@@ -105,6 +112,11 @@ __all__ = [
 # Where each name is. It is imported when it is first asked for: all of them take three times as
 # long as NumPy, and most programs need a few. Editors and type checkers read the imports above.
 _MODULES = {
+    "batches.batch": (
+        "BatchReport",
+        "batch",
+    ),
+    "batches.item": ("BatchRow",),
     "contours.biarcs": ("as_arcs",),
     "contours.contour": ("Contour",),
     "distance.exact": (
@@ -114,6 +126,7 @@ _MODULES = {
         "signed_distance",
         "signed_distance_grid",
     ),
+    "distance.tiled": ("signed_distance_array",),
     "errors": (
         "AxisIncomplete",
         "InputError",

@@ -36,6 +36,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     ),
     "axis": ("part", "-o", "é.svg", "--tolerance", "0.0123456"),
     "thickness": ("part", "--count", "2"),
+    "batch": ("write", "é€.csv", "-o", "{name} é.svg", "-j", "1"),
     "texture": ("é€.csv", "-o", "é.png", "--range", "0.1234567"),
     "atlas": ("drawings é", "-o", "é.png", "--size", "12.345678"),
     "view": ("é€.csv", "--html", "é.html", "--tolerance", "0.05"),
@@ -191,6 +192,7 @@ def words_of(text: str) -> list[str]:
 LONG = {
     "demo": (("splinesdf.cli.demo", "fitted"), ("splinesdf.cli.demo", "draw")),
     "paper": (("splinesdf.paper.tables", "tables"),),
+    "batch": (("splinesdf", "batch"),),  # and the second time it would be kept
 }
 
 
@@ -198,9 +200,9 @@ def once(function: Callable[..., Any]) -> Callable[..., Any]:
     """What a function answered first, however often it is asked the same."""
     answers: list[Any] = []
 
-    def answer(*arguments: Any) -> Any:
+    def answer(*arguments: Any, **options: Any) -> Any:
         if not answers:
-            found = function(*arguments)
+            found = function(*arguments, **options)
             answers.append(list(found) if isinstance(found, Iterator) else found)
         return answers[0]
 

@@ -99,8 +99,8 @@ def test_options_of_contours_are_refused(
         ("a.nc", r"spline\.contours"),
         ("a.npz", r"spline\.save"),
         ("a.JSON", r"spline\.save"),
-        ("a.vtk", r"ending in \.vtu"),
-        ("a", r"ending in \.vtu"),
+        ("a.vtk", r"ending in \.glsl, \.vtu, \.wgsl"),
+        ("a", r"ending in \.glsl, \.vtu, \.wgsl"),
         ("no/a.vtu", "does not exist"),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.meshes import Grid
-from splinesdf.splines import shader
+from splinesdf.splines import shader_table
 from tests.named_shapes import gamma
 
 UNIT = (0.0, 0.0, 1.0, 1.0)
@@ -50,7 +50,7 @@ def test_grid_lines_are_in_the_table_after_the_cells() -> None:
 
 
 def test_too_many_cells_for_a_texture(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shader, "_HIGH", 1)  # for one of 2048 x 2048 they take gigabytes
+    monkeypatch.setattr(shader_table, "_HIGH", 1)  # for one of 2048 x 2048 they take gigabytes
     flat(Grid.uniform(UNIT, 32, 32)).to_glsl()
     with pytest.raises(ss.InputError, match="at most 2,048 texels for a shader, got 2,112"):
         flat(Grid.uniform(UNIT, 32, 33)).to_glsl()

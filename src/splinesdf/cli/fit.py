@@ -52,7 +52,7 @@ from splinesdf.splines.archive import SAVED
     "outputs",
     multiple=True,
     type=OUTPUT,
-    help="Save the fit as .npz or .json, write its field as .vtu; again.",
+    help="Save the fit as .npz or .json, write its field as .vtu .glsl .wgsl; again.",
 )
 @click.option("--plot", "picture", type=OUTPUT, help="Draw the fit as .png, .svg or .pdf.")
 @answering

@@ -20,6 +20,7 @@ except ImportError:
 
 from splinesdf.cli.atlas import atlas
 from splinesdf.cli.axis import axis
+from splinesdf.cli.batch import batch
 from splinesdf.cli.completion import completion
 from splinesdf.cli.console import write_on_any_terminal
 from splinesdf.cli.demo import demo
@@ -88,6 +89,6 @@ def commands() -> None:
     """
 
 
-_COMMANDS = (fit, offset, axis, thickness, query, texture, atlas, view, paper, info, demo)
-for _command in (*_COMMANDS, completion):
+_SHAPES = (fit, offset, axis, thickness, query, batch)
+for _command in (*_SHAPES, texture, atlas, view, paper, info, demo, completion):
     commands.add_command(_command)

@@ -180,10 +180,14 @@ def signed_distance_grid(
     """
     box = check_shape(shape).default_domain() if domain is None else check_domain(domain)
     x, y = grid_nodes(nx, ny, box)
-    farthest, columns, rows = _farthest(max_distance), len(x), len(y)
-    distance = np.empty((rows, columns))
-    boundary = check_shape(shape).boundary
-    across = math.ceil(columns / _TILE)
+    return DistanceGrid(x, y, distances_on(shape, x, y, max_distance))
+
+
+def distances_on(shape: Shape, x: Floats, y: Floats, max_distance: float | None) -> Floats:
+    """Signed distances at the nodes (x[i], y[j]) of lines that increase, shape (ny, nx)."""
+    farthest, boundary = _farthest(max_distance), check_shape(shape).boundary
+    across, up = (math.ceil(len(nodes) / _TILE) for nodes in (x, y))
+    distance = np.empty((len(y), len(x)))
 
     def work(tiles: slice) -> None:
         row, column = (_TILE * k for k in divmod(tiles.start, across))
@@ -194,8 +198,8 @@ def signed_distance_grid(
         values[order] = feet.distance
         distance[part] = values.reshape(nodes.shape[:2])
 
-    in_blocks(across * math.ceil(rows / _TILE), work, size=1)
-    return DistanceGrid(x, y, distance)
+    in_blocks(across * up, work, size=1)
+    return distance
 
 
 def closest_point(shape: Shape, points: ArrayLike) -> Floats:
@@ -310,10 +314,9 @@ def _feet(
     shape: Shape, boundary: Arclets, points: Floats, *, farthest: float = np.inf
 ) -> tuple[Feet, Ints]:
     """Closest points of a block, with signed distances, and the order in which they come."""
+    # Numba loads only when it is used.
     from splinesdf.arclets.kernels.nearest import nearest
-    from splinesdf.arclets.kernels.nearest_convex import (
-        nearest_of_few,  # Numba loads only when it is used
-    )
+    from splinesdf.arclets.kernels.nearest_convex import nearest_of_few
     from splinesdf.arclets.kernels.winding import fill_inside
 
     outline = shape.arclets

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from threading import current_thread
 
@@ -12,6 +14,17 @@ from threading import current_thread
 # the last block keeps one core busy alone, and a block's arrays leave the second-level cache.
 _BLOCK = 8192
 _NAME = "splinesdf-blocks"
+_ALONE: ContextVar[bool] = ContextVar("alone", default=False)
+
+
+@contextmanager
+def alone() -> Iterator[None]:
+    """Have this thread do all its blocks itself: other processes have the other processors."""
+    before = _ALONE.set(True)
+    try:
+        yield
+    finally:
+        _ALONE.reset(before)
 
 
 def processors() -> int:
@@ -40,7 +53,8 @@ def in_blocks(count: int, work: Callable[[slice], None], *, size: int = _BLOCK) 
     """
     parts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
     workers = processors()
-    if len(parts) <= 1 or workers == 1 or current_thread().name.startswith(_NAME):
+    within = _ALONE.get() or current_thread().name.startswith(_NAME)
+    if len(parts) <= 1 or workers == 1 or within:
         for part in parts:
             work(part)
         return

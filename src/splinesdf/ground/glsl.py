@@ -1,4 +1,4 @@
-"""Names, numbers and comments of shaders, as GLSL 3.30 and GLSL ES 3.00 both take them."""
+"""Names, numbers and comments of shaders, as GLSL 3.30, GLSL ES 3.00 and WGSL take them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,24 @@ static step struct superp switch template texture this transpose true typedef ui
 unsigned using varying vec2 vec3 vec4 void volatile while
 """
 _TAKEN = frozenset(_WORDS.split())
+# Of WGSL: keywords, reserved words, and the names that our text calls or that are types in it.
+_WGSL_WORDS = """
+NULL Self abstract active alias alignas alignof array as asm async attribute auto await become
+break case cast catch clamp class coherent common compile concept const const_assert const_cast
+consteval constexpr constinit continue continuing crate debugger decltype default delete demote
+diagnostic discard do dynamic_cast else enable enum explicit export extends extern external f16 f32
+fallthrough false filter final finally floor fn for friend from fxgroup get goto groupshared highp
+i32 if impl implements import inline instanceof interface layout length let loop lowp macro match
+max mediump meta min mod module move mut mutable namespace new nil noexcept noinline nointerpolation
+noncoherent noperspective null nullptr of operator override package packoffset partition pass patch
+pixelfragment precise precision premerge priv protected pub public readonly ref regardless register
+reinterpret_cast require requires resource restrict return select self set shared sizeof smooth
+snorm static static_assert static_cast std struct subroutine super switch target template this
+thread_local throw trait true try type typedef typeid typename typeof u32 union unless unorm unsafe
+unsized use using var varying vec2f vec3f vec4f virtual volatile wgsl where while with writeonly
+yield
+"""
+_WGSL_TAKEN = frozenset(_WGSL_WORDS.split())
 
 # Smaller sides of a box that may lie between it and the origin. float32 tells 1.7e7 places apart,
 # so 16,000 are left for that side. More: distances lose digits that are seen; fewer: long, thin
@@ -37,6 +55,14 @@ def check_name(name: str) -> None:
     if not isinstance(name, str) or not _NAME.match(name) or name in _TAKEN:
         raise InputError(
             f"expected a name of letters, digits and _ that GLSL has no use for, got {shown(name)}"
+        )
+
+
+def check_wgsl_name(name: str) -> None:
+    """An `InputError` unless a function of WGSL may have the name."""
+    if not isinstance(name, str) or not _NAME.match(name) or name in _WGSL_TAKEN:
+        raise InputError(
+            f"expected a name of letters, digits and _ that WGSL has no use for, got {shown(name)}"
         )
 
 

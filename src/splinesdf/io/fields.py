@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from splinesdf.errors import InputError
 from splinesdf.ground.atomic import atomic_file
 from splinesdf.ground.paths import as_path
 from splinesdf.io.writers import WRITERS
-from splinesdf.io.writers.vtu import vtu_bytes
+from splinesdf.io.writers.shaders import glsl_bytes, wgsl_bytes
+from splinesdf.io.writers.vtu import spline_bytes
 from splinesdf.splines.archive import SAVED
 from splinesdf.splines.spline import SplineSDF
 
-FIELDS = frozenset({".vtu"})
+FIELDS: Mapping[str, Callable[[SplineSDF], bytes]] = {
+    ".vtu": spline_bytes,
+    ".glsl": glsl_bytes,
+    ".wgsl": wgsl_bytes,
+}
 
 
 def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: Sequence[str]) -> None:
@@ -29,7 +34,7 @@ def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: Sequence
     Raises
     ------
     InputError
-        If the extension is not of a field, an option is given, `SplineSDF.triangles` is refused,
+        If the extension is not of a field, an option is given, the format cannot hold the spline,
         or the file cannot be written.
     """
     suffix = check_field(path)
@@ -38,10 +43,7 @@ def write_field(path: str | os.PathLike[str], spline: SplineSDF, given: Sequence
             f"expected {', '.join(given)} only for contours, got a spline for {suffix}: leave that "
             "out"
         )
-    made = spline.made
-    known = {} if made is None else {"error": made.error, "bound": made.bound}
-    facts = {name: value for name, value in known.items() if value is not None}
-    data = vtu_bytes(spline.triangles(), facts)
+    data = FIELDS[suffix](spline)
     with atomic_file(path) as file:
         file.write(data)
 

@@ -74,6 +74,8 @@ def write(
         ``.geojson .wkt``        polygons with holes, or lines where a contour is open
         ``.csv``                 points
         ``.vtu``                 a spline: exact, on quadratic triangles (`SplineSDF.triangles`)
+        ``.glsl .wgsl``          a spline: functions for shaders, in float32 (`SplineSDF.to_glsl`,
+                                 `SplineSDF.to_wgsl`), and in the comment at the end their table
         ======================== ===========================================================
     contours : iterable of Contour, one Contour, Shape, or SplineSDF
         Of a shape its boundary is written (its offset by 0, to half the tolerance); a spline takes

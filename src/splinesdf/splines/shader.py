@@ -1,12 +1,6 @@
 """A quadratic spline as GLSL: a function, and the table of numbers that it reads from a texture.
 
-    cells ──power form, float32──> two texels a cell ────────┐
-    mesh ──lines, or nodes of the tree──> four numbers a texel ┴─> table (rows, 2048, 4)
-                                   where these begin ──> text of a function of vec2
-
-The numbers are in a texture, as compilers take seconds for some hundred cells in the text. A
-shader has float32 and no doubles, so places within a cell are found by halving shares of a root
-cell, which float32 does exactly; what is left is the rounding of the point itself.
+The table is `shader_table`'s, whose root cells and nodes the text goes through.
 """
 
 from __future__ import annotations
@@ -16,17 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Floats
 from splinesdf.ground.glsl import check_name, comment, corners, vector
-from splinesdf.meshes import Grid, Quadtree
+from splinesdf.splines.shader_table import WIDE, shader_table
 
 if TYPE_CHECKING:
     from splinesdf.splines.spline import SplineSDF
-
-# Texels in a row of the table, and rows: the size of texture that all of WebGL2 has. More: a phone
-# refuses the table; fewer: fits that would do are refused. It is room for 1.8 million cells.
-_WIDE, _HIGH = 2048, 2048
 
 _FUNCTION = """\
 // {title}
@@ -127,59 +115,18 @@ def to_glsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float
     (True, (1, 2048, 4))
     """
     check_name(name)
-    if spline.element.degree != 2:
-        raise InputError(
-            f"expected a quadratic spline for shaders, got a {spline.element.name} one"
-        )
-    mesh, powers = spline.mesh, spline.element.table(spline.ordinates)
-    assert isinstance(mesh, Grid | Quadtree)
-    low, high = corners(mesh.domain)
-    depth, numbers = 0, np.empty(0)
-    if isinstance(mesh, Quadtree):
-        locate, depth = _IN_TREE, mesh.depth
-        numbers = np.where(mesh.child >= 0, mesh.child, -1 - mesh.cell_of).astype(np.float64)
-    elif mesh.is_uniform:
-        locate = _IN_EQUAL_CELLS
-    else:
-        locate, numbers = _IN_GRID, np.concatenate([_lines(mesh.x, "x"), _lines(mesh.y, "y")])
-    table = _table(powers, numbers)
-    m, n = mesh.shape
+    told = shader_table(spline)
+    locate = {"tree": _IN_TREE, "equal": _IN_EQUAL_CELLS, "lines": _IN_GRID}[told.way]
+    m, n = told.counts
+    low, high = corners(spline.domain)
     names = {"name": name, "m": m, "n": n, "low": low, "high": high, "counts": vector((m, n))}
     text = _FUNCTION.format(
         title=comment(repr(spline)[1:-1]),
         axis=", whose y points down" if spline.y_down else "",
-        rows=len(table),
-        wide=_WIDE,
-        first=2 * len(powers),
-        locate=locate.format(depth=depth, **names),
+        rows=len(told.table),
+        wide=WIDE,
+        first=told.first,
+        locate=locate.format(depth=told.depth, **names),
         **names,
     )
-    return text, table
-
-
-def _lines(lines: Floats, axis: str) -> Floats:
-    if np.any(np.diff(lines.astype(np.float32)) <= 0.0):
-        raise InputError(
-            f"expected grid lines {axis} that float32 tells apart, got steps of "
-            f"{np.diff(lines).min():.3g}: move the shape nearer to the origin"
-        )
-    return lines
-
-
-def _table(powers: Floats, numbers: Floats) -> NDArray[np.float32]:
-    """Two texels a cell, then four numbers a texel, in whole rows."""
-    count = 2 * len(powers) + -(-len(numbers) // 4)
-    rows = -(-count // _WIDE)
-    if rows > _HIGH:
-        raise InputError(
-            f"expected a spline of at most {_WIDE * _HIGH:,} texels for a shader, got {count:,}: "
-            "raise the fit's tolerance, or give it a band"
-        )
-    flat = np.zeros(4 * rows * _WIDE)
-    flat[: powers.size] = powers.reshape(-1)
-    flat[powers.size : powers.size + len(numbers)] = numbers
-    with np.errstate(over="ignore"):
-        table = flat.astype(np.float32).reshape(rows, _WIDE, 4)
-    if not np.isfinite(table).all():
-        raise InputError("expected a spline whose numbers float32 can hold, got one beyond 3e38")
-    return table
+    return text, told.table

@@ -34,6 +34,7 @@ from splinesdf.splines.archive import (
     write_archive,
 )
 from splinesdf.splines.border import border_of, extend_lattice
+from splinesdf.splines.cell_arrays import to_arrays
 from splinesdf.splines.coefficients import coefficients
 from splinesdf.splines.finite_elements import to_skfem
 from splinesdf.splines.level_sets import contours
@@ -41,7 +42,8 @@ from splinesdf.splines.nodes import values_at_nodes
 from splinesdf.splines.provenance import Provenance
 from splinesdf.splines.shader import to_glsl
 from splinesdf.splines.tables import Border
-from splinesdf.splines.triangles import Triangles, quadratic_triangles
+from splinesdf.splines.triangles import triangles
+from splinesdf.splines.wgsl import to_wgsl
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -293,28 +295,12 @@ class SplineSDF:
         picture = Picture([c.points() for c in zero], self.domain, "nonzero", self.y_down)
         return card(kind, self.name, figures, picture)
 
-    def triangles(self) -> Triangles:
-        """The spline as a conforming mesh of quadratic Lagrange triangles, exact to rounding.
-
-        Four triangles a cell, more where cells of a quadtree have smaller neighbors: there a
-        triangle is a fan from the cell's center to their corners. No node hangs on an edge.
-
-        Raises
-        ------
-        InputError
-            If the spline is cubic, not finite, or not continuous (fits are).
-
-        Examples
-        --------
-        >>> import splinesdf as ss
-        >>> ss.interpolate(ss.example("gamma1"), (4, 4)).spline.triangles()
-        <Triangles: 64 triangles, 145 nodes>
-        """
-        return quadratic_triangles(self.mesh, self.element, self.ordinates)
-
     coefficients = coefficients
+    triangles = triangles
+    to_arrays = to_arrays
     to_skfem = to_skfem
     to_glsl = to_glsl
+    to_wgsl = to_wgsl
 
     def to_dict(self) -> dict[str, Any]:
         """All that a saved file holds, as texts, numbers, lists and dicts, for JSON.

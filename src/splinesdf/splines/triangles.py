@@ -14,7 +14,7 @@ nothing is approximated:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from splinesdf.meshes import Mesh
 from splinesdf.meshes.mesh import SQUARABLE
 from splinesdf.spaces.element import Element
 from splinesdf.spaces.space import space_on
+
+if TYPE_CHECKING:
+    from splinesdf.splines.spline import SplineSDF
 
 # Of the largest ordinate: cells may disagree about their common side by so much. Less: rounding
 # reaches it; more: what is no continuous function, which no conforming mesh can hold, passes.
@@ -88,7 +91,27 @@ class _Pieces(NamedTuple):
     part: Floats  # (p, 2) where it starts and ends along the side, from 0 to 1
 
 
-def quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Triangles:
+def triangles(spline: SplineSDF) -> Triangles:
+    """The spline as a conforming mesh of quadratic Lagrange triangles, exact to rounding.
+
+    Four triangles a cell, more where cells of a quadtree have smaller neighbors: there a
+    triangle is a fan from the cell's center to their corners. No node hangs on an edge.
+
+    Raises
+    ------
+    InputError
+        If the spline is cubic, not finite, or not continuous (fits are).
+
+    Examples
+    --------
+    >>> import splinesdf as ss
+    >>> ss.interpolate(ss.example("gamma1"), (4, 4)).spline.triangles()
+    <Triangles: 64 triangles, 145 nodes>
+    """
+    return _quadratic_triangles(spline.mesh, spline.element, spline.ordinates)
+
+
+def _quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Triangles:
     """The mesh of a spline of degree 2.
 
     Raises

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from splinesdf.splines.spline import SplineSDF
 from splinesdf.splines.triangles import Triangles
 
 # VTK's number of the cell with nodes at three corners and in the middles of three edges.
@@ -19,6 +20,14 @@ _HEAD = (
     'byte_order="LittleEndian" header_type="UInt64">\n<UnstructuredGrid>\n'
 )
 _TAIL = "</UnstructuredGrid>\n</VTKFile>\n"
+
+
+def spline_bytes(spline: SplineSDF) -> bytes:
+    """A spline's triangles, with its error and bound if they are known."""
+    made = spline.made
+    known = {} if made is None else {"error": made.error, "bound": made.bound}
+    facts = {name: value for name, value in known.items() if value is not None}
+    return vtu_bytes(spline.triangles(), facts)
 
 
 def vtu_bytes(mesh: Triangles, facts: Mapping[str, float]) -> bytes:
