@@ -84,8 +84,11 @@ def _closed(boundary: Arclets) -> Ints:
     """
     following = boundary.following.copy()
     count = len(following)
-    if (following >= 0).all() and len(np.unique(following)) == count:
-        return following
+    if (following >= 0).all():
+        reached = np.zeros(count, dtype=np.bool_)
+        reached[following] = True
+        if reached.all():
+            return following
     gap = np.hypot(*(boundary.start[following] - boundary.end).T)
     gap[following < 0] = np.inf
     # Of several ends that lead to one start the nearest keeps it.

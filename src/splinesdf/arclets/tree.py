@@ -29,7 +29,7 @@ _ROUNDING = 16 * 2.220446049250313e-16
 # itself, as a spiral does, and all of its turns are looked at for each point. Larger: such curves
 # take time like the square of their length; smaller: a second tree is made in vain. With fewer
 # arclets than the second number it is never made.
-_WINDS, _MANY = 3.0, 1024
+_WINDS, _MANY = 6.0, 1024
 # Bits of each coordinate in the order of places.
 _BITS = 24
 

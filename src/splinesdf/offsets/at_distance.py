@@ -79,6 +79,7 @@ def contours_at(
             fit.weights[a:b],
             distance=distance,
             y_down=shape.y_down,
+            tolerance=tolerance + abs(shift),
             unit=shape.unit,
             page=shape.page,
         )

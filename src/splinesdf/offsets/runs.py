@@ -127,26 +127,42 @@ def _bent(points: Floats, center: Floats, kind: Ints, ends: Bools, allowed: floa
     """Find where straight and round runs must end early to stay on their line or circle."""
     result = np.zeros(len(ends), dtype=np.bool_)
     last = np.flatnonzero(ends)
-    for a, b in zip([0, *(last[:-1] + 1).tolist()], (last + 1).tolist(), strict=True):
-        if b - a < 2 or kind[a] == FREE:
-            continue
+    first = np.concatenate([[0], last[:-1] + 1])
+    off = _off_runs(points, center, kind, first)
+    for run in np.flatnonzero((off > allowed) & (last > first)).tolist():
+        a, b = int(first[run]), int(last[run]) + 1
         if kind[a] == STRAIGHT:
             chain = np.concatenate([points[a : a + 1, 0], points[a:b, 2]])
-            if off_chord(chain[None])[0] > allowed:
-                result[a + _straight_parts(chain, allowed)] = True
+            result[a + _straight_parts(chain, allowed)] = True
             continue
-        if (
-            _off_circle(points[None, a, 1:2], points[a:b].reshape(1, -1, 2), center[None, a])[0]
-            > allowed
-        ):
-            first = a
-            for k in range(a + 1, b):
-                if (
-                    _off_circle(points[None, first], points[None, k], center[None, first])[0]
-                    > allowed
-                ):
-                    result[k - 1], first = True, k
+        begin = a
+        for k in range(a + 1, b):
+            if _off_circle(points[None, begin], points[None, k], center[None, begin])[0] > allowed:
+                result[k - 1], begin = True, k
     return result
+
+
+def _off_runs(points: Floats, center: Floats, kind: Ints, first: Ints) -> Floats:
+    """Measure how far each run is off the line, or the circle, of its first segment: (n_runs,).
+
+    Of a line from its start to its end, of a circle through the middle of the first segment; 0 for
+    free runs.
+    """
+    count = np.diff(np.append(first, len(points)))
+    begin = np.repeat(first, count)
+    start = points[first, 0]
+    chord = points[first + count - 1, 2] - start
+    apart = points[:, 2] - np.repeat(start, count, axis=0)
+    ahead = np.repeat(chord, count, axis=0)
+    cross = np.abs(ahead[:, 0] * apart[:, 1] - ahead[:, 1] * apart[:, 0])
+    cross[first + count - 1] = 0.0  # the end of the line itself
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    far = np.maximum.reduceat(np.hypot(apart[:, 0], apart[:, 1]), first)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        line = np.where(length > 0.0, np.maximum.reduceat(cross, first) / length, far)
+    off = _off_circle(points[begin, 1:2], points, center[begin])
+    circle = np.maximum.reduceat(off, first)
+    return np.where(kind[first] == STRAIGHT, line, np.where(kind[first] == ROUND, circle, 0.0))
 
 
 def _straight_parts(chain: Floats, allowed: float) -> Ints:
