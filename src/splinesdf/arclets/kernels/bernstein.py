@@ -29,6 +29,7 @@ def fill_curvature(control: Floats, d: int, pascal: Floats, room: Floats, ranges
     """
     _fill_derivatives(control, d, room)
     a, b, c = d - 1, max(d - 2, 0), max(d - 3, 0)
+    x, y, x2, y2, x3, y3 = room[0], room[1], room[2], room[3], room[4], room[5]
     # Rows of their own: there is one of each at least, as d is 2 or more.
     large, low, high, most = room[8, 0], room[8, 1], room[9, 0], room[9, 1]
     for n in range(LANES):
@@ -42,17 +43,17 @@ def fill_curvature(control: Floats, d: int, pascal: Floats, room: Floats, ranges
         _scale(pascal, room[axis], a)
         _scale(pascal, room[2 + axis], b)
         _scale(pascal, room[4 + axis], c)
-    _range(pascal, room, (0, 3, 1, 2), -1.0, (a, b), low, high)
+    _range(pascal, room, (x, y2, y, x2), -1.0, (a, b), low, high)
     for n in range(LANES):
         ranges[0, n], ranges[1, n] = low[n] - large[n], high[n] + large[n]
-    _range(pascal, room, (0, 2, 1, 3), 1.0, (a, b), low, high)
+    _range(pascal, room, (x, x2, y, y2), 1.0, (a, b), low, high)
     for n in range(LANES):
         cross = max(abs(ranges[0, n]), abs(ranges[1, n]))
         ranges[2, n] = cross * max(abs(low[n]), abs(high[n]))
-    _range(pascal, room, (0, 5, 1, 4), -1.0, (a, c), low, high)
+    _range(pascal, room, (x, y3, y, x3), -1.0, (a, c), low, high)
     for n in range(LANES):
         large[n] = max(abs(low[n]), abs(high[n]))
-    _range(pascal, room, (0, 0, 1, 1), 1.0, (a, a), low, most)
+    _range(pascal, room, (x, x, y, y), 1.0, (a, a), low, most)
     for n in range(LANES):
         speed_low, speed_high = low[n] - SLACK * most[n], most[n] * (1.0 + SLACK)
         if not speed_low > 0.0:
@@ -96,14 +97,14 @@ def _scale(pascal: Floats, row: Floats, degree: int) -> None:
 def _range(
     pascal: Floats,
     room: Floats,
-    rows: tuple[int, int, int, int],
+    rows: tuple[Floats, Floats, Floats, Floats],
     sign: float,
     degrees: tuple[int, int],
     low: Floats,
     high: Floats,
 ) -> None:
     """Fill least and largest coefficient of p q + sign r s, of rows scaled by binomials."""
-    p, q, r, s = room[rows[0]], room[rows[1]], room[rows[2]], room[rows[3]]
+    p, q, r, s = rows
     one, other = room[6], room[7]
     a, b = degrees
     for k in range(a + b + 1):

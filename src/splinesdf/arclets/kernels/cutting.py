@@ -102,6 +102,8 @@ def _cut_pieces(
     room: _Room,
     found: Cut,
 ) -> None:
+    # Not literals, for which what is called would be compiled by itself.
+    bottom, one = int(np.int64(0)), int(np.int64(1))
     for piece in range(pieces.starts.shape[0] - 1):
         first = pieces.starts[piece]
         d = pieces.starts[piece + 1] - first - 1
@@ -111,12 +113,12 @@ def _cut_pieces(
             waiting.start[0, axis] = pieces.control[first, axis] - pieces.origin[axis]
             waiting.interval[0, axis] = float(axis)
         if d == 1:
-            _keep(waiting, 0, d, piece, found)
+            _keep(waiting, bottom, d, piece, found)
             continue
         own = extent(waiting.control[0], d)
         _near_slow_end(waiting.control[0], d)
         waiting.stage[0, 0] = waiting.stage[0, 1] = 0
-        size = 1
+        size = one
         while size > 0:
             size = _cut_one(waiting, size, (d, piece, own), cutting, room, found)
 
