@@ -45,11 +45,11 @@ def _run(row: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    _load()
+    load()
     print(CASES[row].measure())
 
 
-def _load() -> None:
+def load() -> None:
     """Use all that is measured once, so that code is compiled, or loaded."""
     import splinesdf as ss
     from benchmarks import speed_cases as cases
