@@ -12,6 +12,7 @@ import argparse
 import math
 import os
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -77,9 +78,10 @@ def main() -> None:
     for name, (least, timed) in ROWS.items():
         counts = [least * 10**k for k in range(arguments.decades + 1)]
         found = [timed(count) for count in counts]
-        slopes = [math.log10(b / a) for a, b in zip(found[:-1], found[1:], strict=True)]
-        print(f"{name:28}" + "".join(f"{n:>9,}: {s:8.4f} s" for n, s in zip(counts, found, strict=True))
-              + "   exponents " + ", ".join(f"{slope:.2f}" for slope in slopes), flush=True)  # fmt: skip
+        slopes = [math.log10(b / a) for a, b in pairwise(found)]
+        times = "".join(f"{n:>9,}: {s:8.4f} s" for n, s in zip(counts, found, strict=True))
+        exponents = ", ".join(f"{slope:.2f}" for slope in slopes)
+        print(f"{name:28}{times}   exponents {exponents}", flush=True)
 
 
 if __name__ == "__main__":
