@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.ground import card
 
 CORNERS = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]
 
@@ -53,7 +54,12 @@ REFUSED: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "three counts": (lambda: shape_grid((8, 8, 8)), ss.InputError, "pair of node counts"),
     "two pairs": (lambda: shape_grid((8, 8), 8), ss.InputError, "pair of node counts"),
     "progress": (lambda: ss.fit(shape(), 0.1, progress=3), ss.InputError, "function for progress"),
-    "x and y": (lambda: ss.signed_distance(shape(), 1.0, 2.0), TypeError, "positional"),
+    "x and y": (
+        lambda: ss.signed_distance(shape(), [1.0, 2.0], [1.0, 2.0, 3.0]),
+        ss.InputError,
+        "x and y of shapes that broadcast, got \\(2,\\) and \\(3,\\)$",
+    ),
+    "x and no y": (lambda: result()(1.0, "b"), ss.InputError, "expected y as numbers, got 'b'$"),
 }
 
 
@@ -172,16 +178,32 @@ def test_cards_are_markup_that_shows_names_as_text(name: str) -> None:
     named = replace(shape(), name=name)
     spline = replace(result().spline, shape=named, name=name)
     for one in (named, spline, ss.FitResult(spline, result().history)):
-        card = one._repr_html_()
-        tree = ElementTree.fromstring(card)
+        text = one._repr_html_()
+        tree = ElementTree.fromstring(text)
         assert name in "".join(tree.itertext())
-        assert html.escape(name) in card
-        assert len(card) < 3000
+        assert html.escape(name) in text
+        assert len(text) < 3000
         (path,) = tree.iter("path")
         assert path.get("d", "").count("M") == 1
     assert "0.1" in ElementTree.fromstring(shape().offset(0.1)[0]._repr_html_()).find(
         "div/table"
     ).findtext("tr/td[2]")
+
+
+@pytest.mark.parametrize("point", [False, True])
+def test_a_card_of_what_cannot_be_drawn_has_its_figures(
+    point: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A contour that is a point, and one of more points than a page takes."""
+    if point:
+        contour = ss.Contour(np.full((2, 3, 2), 5.0), np.ones(2))
+    else:
+        (contour,) = shape().offset(0.1)
+        assert "<svg" in contour._repr_html_()
+        monkeypatch.setattr(card, "_MOST_POINTS", 7)
+    tree = ElementTree.fromstring(contour._repr_html_())
+    assert tree.find("svg") is None
+    assert tree.findtext("div/table/tr[2]/td[2]") == f"{len(contour.arcs)} (closed)"
 
 
 def test_a_card_shows_the_shape_upright_and_whole() -> None:
@@ -202,3 +224,28 @@ def test_a_card_shows_the_shape_upright_and_whole() -> None:
             across[1] = across[1] if y_down else (top - point[1]) * steps
             if abs(part.signed_distance(point)) > 0.5:
                 assert (across in drawn) == (point in part)
+
+
+def test_x_and_y_apart_are_points() -> None:
+    x, y = np.linspace(-1.0, 3.0, 5), np.linspace(-1.0, 2.0, 4)[:, None]
+    points = [[(a, b) for a in x] for b in y[:, 0]]
+    spline = result().spline
+    for answer in (
+        lambda *at: ss.signed_distance(shape(), *at),
+        lambda *at: shape().signed_distance(*at, max_distance=0.5),
+        lambda *at: spline(*at, outside="nan"),
+        lambda *at: result()(*at),
+    ):
+        apart = answer(x, y)
+        assert apart.shape == (4, 5)
+        assert np.array_equal(apart, answer(points), equal_nan=True)
+    assert ss.signed_distance(shape(), 1.0, 0.5) == -0.5
+
+
+def test_a_contour_is_its_arcs() -> None:
+    (contour,) = ss.offset(shape(), 0.5)
+    arcs = list(contour)
+    assert len(contour) == len(arcs) == 8
+    for (points, weight), control, middle in zip(arcs, contour.arcs, contour.weights, strict=True):
+        assert np.array_equal(points, control)
+        assert weight == middle

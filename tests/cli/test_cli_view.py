@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import signal
 import subprocess
@@ -85,6 +86,9 @@ def test_view_opens_the_page_unless_told_not_to(
         assert "Ctrl+C ends it." in done.err
         assert done.err.endswith("ended\n")
     assert opened == ["http://here/"]
+    done = run("view", "gamma1", "--tolerance", "0.1", "--no-open", "--json")
+    assert json.loads(done.out) == {"address": "http://here/"}
+    assert "Ctrl+C" not in done.err
 
 
 def test_view_says_that_many_cells_take_long(run: Command, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,19 +101,24 @@ def test_view_says_that_many_cells_take_long(run: Command, monkeypatch: pytest.M
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_view_serves_until_interrupted(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "splinesdf", "view", "gamma1", "--tolerance", "0.1"]
-    with subprocess.Popen(
+    process = subprocess.Popen(
         [*command, "--no-open"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-    ) as process:
+        # What a shell starts in the background inherits that SIGINT is ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    try:
         assert process.stdout is not None
         address = process.stdout.readline().strip()
         with urlopen(address, timeout=60) as answer:
             assert b"gamma1" in answer.read()
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=60)
+    finally:
+        process.kill()  # nothing, if it has ended
     assert process.returncode == 0
     assert errors.split("\n")[-3:] == ["Ctrl+C ends it.", "ended", ""]
     assert list(tmp_path.iterdir()) == []

@@ -10,6 +10,7 @@ import matplotlib
 import pytest
 
 import splinesdf as ss
+from splinesdf.web.page import write_page
 from tests.docs.pages import DOCS, blocks_of, run_page
 
 DATA = Path(ss.__file__).parent / "data"
@@ -57,3 +58,17 @@ def _put_files(folder: Path) -> None:
     (folder / "icons").mkdir()
     for icon in (Path(__file__).parents[1] / "data").glob("*-fill.svg"):
         shutil.copy(icon, folder / "icons")
+
+
+def test_the_page_on_the_site_is_of_today(tmp_path: Path) -> None:
+    """Its code and style are those that are written now; after a change of them it is made anew."""
+    square = ss.Shape.rectangle(0, 0, 4, 4)
+    write_page(tmp_path / "page.html", ss.fit(square, 1.0).spline)
+    now, there = (
+        file.read_text(encoding="utf-8")
+        for file in (tmp_path / "page.html", DOCS / "explorer" / "bracket.html")
+    )
+    for part in (r"<style>.*?</style>", r'<script id="code">.*?</script>'):
+        (written,) = re.findall(part, now, re.DOTALL)
+        assert len(written) > 1000
+        assert written in there, "run python -m docs.pictures explorer"

@@ -282,7 +282,8 @@ def test_overview_shows_all_four(tmp_path: Path, y_down: bool) -> None:
     figure = plot.overview(result, shape, contours)
     left, right = figure.axes
     assert left.get_title() == f"shape, offsets and mesh: {result.cells:,} cells"
-    assert right.get_title().startswith("signed distance, error ≤ ")
+    bound = float(right.get_title().removeprefix("signed distance, error ≤ "))
+    assert result.bound <= bound <= 1.01 * result.bound
     counts = sorted(len(c.get_segments()) for c in left.collections if hasattr(c, "get_segments"))
     assert 2 * result.cells + 2 in counts
     assert (left.get_ylim()[0] > left.get_ylim()[1]) == y_down
@@ -291,6 +292,21 @@ def test_overview_shows_all_four(tmp_path: Path, y_down: bool) -> None:
     width, height = png_size(tmp_path / "a.png")
     assert width == 1600
     assert 600 < height < 1700
+
+
+def test_overview_calls_no_error_a_bound_that_is_none() -> None:
+    shape = framed("evenodd")
+    result = ss.fit(shape, tolerance=0.1, certify=False)
+    _left, right = plot.overview(result, shape, []).axes
+    assert right.get_title() == f"signed distance, error {plot.at_most(result.error)}, not proved"
+
+
+def test_overview_names_the_bands_that_the_bound_holds_in() -> None:
+    shape = framed("evenodd")
+    result = ss.fit(shape, tolerance=0.1, band=[(-0.2, 0.1), (0.5, 0.5)])
+    _left, right = plot.overview(result, shape, []).axes
+    bound = plot.at_most(result.bound)
+    assert right.get_title() == f"signed distance, error ≤ {bound} for −0.2 to 0.1, 0.5"
 
 
 def png_size(path: Path) -> tuple[int, int]:
@@ -350,7 +366,7 @@ def test_plots_do_not_load_pyplot() -> None:
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.01234, "0.013"), (0.002, "0.002"), (1.001e-7, "1.1e-07"), (0.0, "0"), (0.0999, "0.1")],
+    [(0.01234, "0.0124"), (0.002, "0.002"), (1.001e-7, "1.01e-07"), (0.0, "0"), (0.09999, "0.1")],
 )
 def test_captions_round_up(value: float, text: str) -> None:
     assert plot.at_most(value) == text

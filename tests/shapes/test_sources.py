@@ -130,8 +130,9 @@ def test_long_contours_that_differ_in_a_corner_are_two() -> None:
     assert shape.notes == ()
 
 
-def test_one_contour_is_no_list_of_contours() -> None:
+def test_one_contour_does_for_a_list_of_contours() -> None:
     (contour,) = ss.offset(ss.Shape.circle((0, 0), 1), 1)
-    with pytest.raises(ss.InputError, match=r"list of contours, got Contour: give \[contour\]$"):
-        ss.Shape.from_contours(contour)  # type: ignore[arg-type]
+    assert ss.Shape.from_contours(contour) == ss.Shape.from_contours([contour])
     assert ss.Shape.from_contours([contour]).box == pytest.approx((-2, -2, 2, 2))
+    with pytest.raises(ss.InputError, match=r"expected a list of contours, got int$"):
+        ss.Shape.from_contours(3)  # type: ignore[arg-type]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 
@@ -47,11 +46,6 @@ def main() -> None:
         _fail(_in_words(error))
     except ss.SplineSDFError as error:
         _fail(str(error))
-    except BrokenPipeError:
-        # Whoever read the output has enough of it ("| head"); so that the interpreter does not
-        # complain when it flushes what is left:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
     except MemoryError:
         _fail("not enough memory: raise the tolerance, or ask for a band")
     sys.exit(status if isinstance(status, int) else 0)
@@ -63,6 +57,9 @@ def _in_words(error: click.ClickException) -> str:
     Its "2mm is not a valid float" becomes what was expected and what came.
     """
     message = error.format_message()
+    if isinstance(error, click.MissingParameter) and isinstance(error.param, click.Option):
+        meant = (error.param.help or "").rstrip(".")
+        return f"expected {error.param.opts[-1]}, got none: {meant[:1].lower()}{meant[1:]}"
     if isinstance(error, click.BadParameter) and error.param is not None:
         got = re.match(r"('.*') is not a valid (?:float|integer)", error.message, re.DOTALL)
         if got:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import click
@@ -24,6 +27,9 @@ from splinesdf.ground.arrays import Floats
 from splinesdf.ground.atomic import write_text
 from splinesdf.io.input import read_points
 
+# Numbers in place of a file's name.
+_POINT = r"\s*[-+.\d][-+.\deE\s,;]*"
+
 
 @click.command()
 @click.argument("source", metavar="FIT|SHAPE", type=SHAPE)
@@ -40,6 +46,12 @@ def query(source: str, points: str, output: str | None, reading: dict[str, Any])
     if holds_fit(points):
         raise InputError(
             f"expected a table of points, got a saved fit, {points!r}: give the points last"
+        )
+    if re.fullmatch(_POINT, points) and not Path(points).exists():
+        one = ",".join(re.findall(r"[^\s,;]+", points))
+        raise InputError(
+            f"expected a table of points, got {points!r:.60}: write them into a file, or "
+            f"echo {one:.40} | splinesdf query {shlex.quote(source):.60} -"
         )
     if holds_fit(source):
         spline = load_fit(source, reading)

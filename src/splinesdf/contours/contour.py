@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -86,6 +86,8 @@ class Contour:
     True
     >>> outer.svg_path().startswith("M")
     True
+    >>> len(outer), [weight for _points, weight in outer] == outer.weights.tolist()
+    (8, True)
     >>> axes = outer.plot()
     """
 
@@ -142,6 +144,14 @@ class Contour:
         return brief(
             "Contour", "", f"at {self.distance:g}", counted(len(self.arcs), "arc"), closed, inner
         )
+
+    def __len__(self) -> int:
+        """How many arcs it has."""
+        return len(self.arcs)
+
+    def __iter__(self) -> Iterator[tuple[Floats, float]]:
+        """The arcs in order, each as its control points, shape (3, 2), and its middle weight."""
+        return zip(self.arcs, self.weights.tolist(), strict=True)
 
     def __getstate__(self) -> tuple[dict[str, Any], tuple[Contour, ...]]:
         """The state for pickle and copy: the parent last of a few ancestors, the outermost first.

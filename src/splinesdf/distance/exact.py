@@ -84,7 +84,11 @@ class Projection(NamedTuple):
 
 
 def signed_distance(
-    shape: Shape, points: ArrayLike, *, max_distance: float | None = None
+    shape: Shape,
+    points: ArrayLike,
+    y: ArrayLike | None = None,
+    *,
+    max_distance: float | None = None,
 ) -> Floats:
     """Distance to the boundary of the filled region, negative inside.
 
@@ -92,6 +96,8 @@ def signed_distance(
     ----------
     shape : Shape
     points : array_like, shape (..., 2)
+    y : array_like, optional
+        With it ``points`` are x alone, and both broadcast to shape (...).
     max_distance : float, optional
         Look no farther: what is beyond gets ``-max_distance`` or ``max_distance``. Quicker, the
         smaller it is.
@@ -120,8 +126,10 @@ def signed_distance(
     [-1.0, 0.0, 5.0]
     >>> ss.signed_distance(square, [[7.0, 8.0]], max_distance=2.0).tolist()
     [2.0]
+    >>> ss.signed_distance(square, [1.0, 4.0, 7.0], [[1.0], [2.0]]).tolist()
+    [[-1.0, 0.0, 3.0], [-1.0, 0.0, 3.0]]
     """
-    array = as_points(points)
+    array = as_points(points, y)
     flat = array.reshape(-1, 2)
     farthest = _farthest(max_distance)
     result = np.empty(len(flat))

@@ -87,9 +87,11 @@ class FitResult:
         cells = counted(self.cells, "cell")
         return brief("FitResult", self.spline.name, cells, self._made.errors)
 
-    def __call__(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
-        """The spline's values, shape (..., 2) -> (...,)."""
-        return self.spline(points, outside=outside)
+    def __call__(
+        self, points: ArrayLike, y: ArrayLike | None = None, *, outside: Outside = "extend"
+    ) -> Floats:
+        """The spline's values at points of shape (..., 2), or at x and y: (...,)."""
+        return self.spline(points, y, outside=outside)
 
     def __getattr__(self, name: str) -> NoReturn:
         # Not found here: what is asked may be what the spline answers.

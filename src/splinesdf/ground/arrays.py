@@ -61,12 +61,22 @@ def as_floats(values: ArrayLike, what: str) -> Floats:
         return np.asarray(array, dtype=np.float64, order="C")
 
 
-def as_points(points: ArrayLike) -> Floats:
+def as_points(points: ArrayLike, y: ArrayLike | None = None) -> Floats:
     """Points as a contiguous float64 array of shape (..., 2), or an `InputError`.
+
+    With ``y`` the first are their x, and both are broadcast.
 
     NaN and infinity pass: they are answered by NaN, point by point. Read-only arrays are copied:
     kernels would be compiled once more for them.
     """
+    if y is not None:
+        x, y = as_floats(points, "x"), as_floats(y, "y")
+        try:
+            return np.stack(np.broadcast_arrays(x, y), axis=-1)
+        except ValueError:
+            raise InputError(
+                f"expected x and y of shapes that broadcast, got {x.shape} and {y.shape}"
+            ) from None
     array = as_floats(points, "points")
     if not array.flags.writeable:
         array = array.copy()

@@ -117,7 +117,7 @@ def _surfaces(number: int, name: str) -> Figure:
     for k, (operator, result) in enumerate(results.items()):
         axes = made.add_subplot(1, 3, k + 2, projection="3d")
         plot.plot_surface(result.spline, axes)
-        _title(axes, "bc"[k], f"{operator}({symbol}), error ≤ {_bound(result)}")
+        _title(axes, "bc"[k], f"{operator}({symbol}), {plot.error_text(result)}")
     _caption(
         made,
         number,
@@ -164,7 +164,7 @@ def _meshes(number: int, name: str) -> Figure:
         plot.plot_mesh(result.spline, ax, diagonals=True)
         _curve(name, ax)
         _title(
-            ax, letter, f"{operator}({symbol}): {_cells(result)} cells, error ≤ {_bound(result)}"
+            ax, letter, f"{operator}({symbol}): {_cells(result)} cells, {plot.error_text(result)}"
         )
     _caption(
         made,
@@ -232,17 +232,13 @@ def _grid_shape(result: FitResult) -> tuple[int, int]:
     return len(np.unique(boxes[:, 0])), len(np.unique(boxes[:, 1]))
 
 
-def _bound(result: FitResult) -> str:
-    return plot.at_most(result.error if result.bound is None else result.bound)
-
-
 def _errors(results: dict[str, FitResult]) -> str:
     """The paper's error and the true one, for a caption."""
     centers = ", ".join(f"{key}\u00a0{result.centre_error:.2e}" for key, result in results.items())
-    anywhere = ", ".join(f"{key}\u00a0{_bound(result)}" for key, result in results.items())
+    anywhere = ", ".join(f"{key}\u00a0{plot.error_text(result)}" for key, result in results.items())
     return (
         f"Largest error at the centers of cells, which is the paper's: {centers}; "
-        f"anywhere, proved: at most {anywhere}."
+        f"anywhere, proved: {anywhere}."
     )
 
 

@@ -28,7 +28,7 @@ from splinesdf.plot.figures import (
     new_figure,
     save_figure,
 )
-from splinesdf.plot.overview import overview
+from splinesdf.plot.overview import error_text, overview
 from splinesdf.plot.shapes import plot_fill, plot_shape
 
 __all__ = [
@@ -41,6 +41,7 @@ __all__ = [
     "at_most",
     "check_format",
     "drawn",
+    "error_text",
     "new_figure",
     "overview",
     "plot_contours",

@@ -73,10 +73,13 @@ def check_format(path: str | os.PathLike[str]) -> str:
 
 
 def at_most(value: float) -> str:
-    """Two digits of a positive number, rounded up, so that a caption never says too little."""
-    unit = 10.0 ** (math.floor(math.log10(value)) - 1) if value > 0.0 else 1.0
-    # What rounding adds to a number that has only two digits must not make it the next one.
-    return f"{math.ceil(value / unit * (1.0 - 1e-12)) * unit:.2g}"
+    """Three digits of a positive number, rounded up, so that a caption never says too little.
+
+    With two, an error below its tolerance could be shown as one above it.
+    """
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2) if value > 0.0 else 1.0
+    # What rounding adds to a number that has only three digits must not make it the next one.
+    return f"{math.ceil(value / unit * (1.0 - 1e-12)) * unit:.3g}"
 
 
 def add_colorbar(filled: QuadContourSet, ax: Axes, *, unit: float | None = None) -> None:

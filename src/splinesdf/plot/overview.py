@@ -35,7 +35,7 @@ def overview(result: FitResult, shape: Shape, contours: Iterable[Contour]) -> Fi
     where = f" for {_ranges(result)}" if result.bands else ""
     for ax, title in (
         (left, f"{parts}: {result.cells:,} cells"),
-        (right, f"signed distance, error ≤ {at_most(result.error)}{where}"),
+        (right, f"signed distance, {error_text(result)}{where}"),
     ):
         ax.set_title(title, fontsize=9, color=INK)
         ax.set_xlim(xmin, xmax)
@@ -44,6 +44,13 @@ def overview(result: FitResult, shape: Shape, contours: Iterable[Contour]) -> Fi
     right.set_ylabel("")
     add_colorbar(filled, right, unit=shape.unit)
     return figure
+
+
+def error_text(result: FitResult) -> str:
+    """What is known of a fit's error, for a title: its bound, or the largest that was seen."""
+    if result.bound is None:
+        return f"error {at_most(result.error)}, not proved"
+    return f"error ≤ {at_most(result.bound)}"
 
 
 def _ranges(result: FitResult) -> str:

@@ -18,6 +18,7 @@ from splinesdf.arclets.tables import Arclets, Arcs
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import NOTHING, Bools, Floats, Ints, as_points
 from splinesdf.shapes.loops import closed_loops
+from splinesdf.shapes.partial import ends_of, restrict, together
 from splinesdf.shapes.parts import MERGE, Parts, chain_ends, cut_at_crossings, groups, without_cuts
 from splinesdf.shapes.sides import Sides, bounding, look_at_sides
 
@@ -139,8 +140,9 @@ def _in_vain(
 ) -> Bools:
     """Which chains on top of others are kept in vain: more begin than end where they begin.
 
-    And more end than begin where they end. So it is where three lie on each other that are not cut
-    in the same places: of a boundary as many chains end as begin in each point.
+    And more end than begin where they end, or the last of several does of which each leads on to
+    the next. So it is where three lie on each other that are not cut in the same places: of a
+    boundary as many chains end as begin in each point.
     """
     some = np.flatnonzero(keep & ~parts.closed)
     group = groups(chain_ends(outline, parts)[:, some].reshape(-1, 2), near).reshape(2, -1)
@@ -153,7 +155,38 @@ def _in_vain(
             result[some[k]] = True
             more[begin[k]] -= 1
             more[end[k]] += 1
+    for first in np.flatnonzero(more > 0).tolist():
+        free = np.flatnonzero(doubled[some] & ~result[some])
+        for _ in range(int(more[first])):
+            way = _way(first, more < 0, begin[free], end[free])
+            if not way:
+                break
+            rows = free[way]
+            result[some[rows]] = True
+            more[first] -= 1
+            more[end[rows[-1]]] += 1
+            free = free[~result[some[free]]]
     return result
+
+
+def _way(first: int, goal: Bools, begin: Ints, end: Ints) -> list[int]:
+    """The fewest edges from a point to one of some others, in order; none if there is no way."""
+    order = np.argsort(begin, kind="stable")
+    starts = np.searchsorted(begin[order], np.arange(len(goal) + 1))
+    by: dict[int, int] = {first: -1}  # the edge that led to each point
+    points = [first]
+    for point in points:  # it grows
+        if goal[point]:
+            way = []
+            while by[point] >= 0:
+                way.append(by[point])
+                point = int(begin[by[point]])
+            return way[::-1]
+        for edge in order[starts[point] : starts[point + 1]].tolist():
+            if (to := int(end[edge])) not in by:
+                by[to] = edge
+                points.append(to)
+    return []
 
 
 def _cut_in_vain(outline: Arclets, parts: Parts, keep: Bools, left: Bools, near: float) -> Bools:
@@ -187,7 +220,7 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         rows = np.flatnonzero(kept & (degree[parts.arclet] == d))
         arclet = parts.arclet[rows]
         control, start = control_points(outline.power[arclet, : d + 1]), outline.start[arclet]
-        arcs = _restrict(
+        arcs = restrict(
             Arcs(
                 control,
                 start,
@@ -199,7 +232,7 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         )
         turned = ~left[parts.chain[rows]]
         whole = parts.interval[rows, 1] == 1.0
-        arcs.start[turned] = np.where(whole[:, None], outline.end[arclet], _ends(arcs))[turned]
+        arcs.start[turned] = np.where(whole[:, None], outline.end[arclet], ends_of(arcs))[turned]
         arcs.control[turned] = arcs.control[turned, ::-1]
         arcs.interval[turned] = arcs.interval[turned, ::-1]
         # What meets in one point does so to the bit.
@@ -207,12 +240,12 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         begins = np.flatnonzero(np.where(turned, last[rows], parts.place[rows] == 0))
         arcs.start[begins] = meeting[side[begins], chain[begins]]
         stops = np.flatnonzero(np.where(turned, parts.place[rows] == 0, last[rows]))
-        arcs.control[stops, -1] += meeting[1 - side[stops], chain[stops]] - _ends(arcs)[stops]
+        arcs.control[stops, -1] += meeting[1 - side[stops], chain[stops]] - ends_of(arcs)[stops]
         arcs_of.append(arcs)
         labels.append(label[parts.chain[rows]])
         places.append(np.where(turned, -parts.place[rows], parts.place[rows]))
     runs = Sequences(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
-    boundary = assemble(_together(arcs_of), runs, outline.origin)
+    boundary = assemble(together(arcs_of), runs, outline.origin)
     open_end = np.flatnonzero(boundary.following < 0)
     chain = np.flatnonzero(keep)[boundary.run[open_end]]
     boundary.end[open_end] = meeting[left[chain].astype(np.int64), chain]
@@ -246,64 +279,6 @@ def _meeting_points(outline: Arclets, parts: Parts, keep: Bools, near: float) ->
     _, representative = np.unique(group, return_index=True)
     points[:, joined] = some[representative][group].reshape(2, -1, 2)
     return points
-
-
-def _restrict(arcs: Arcs, interval: Floats) -> Arcs:
-    """The parts of arcs between two parameters each."""
-    low, high = interval.T
-    count = len(low)
-    result = Arcs._make(column.copy() for column in arcs)
-    for at, part, whole in (
-        (high, slice(0, count), high == 1.0),
-        (low / high, slice(count, None), low == 0.0),
-    ):
-        cut = _split(result, at)
-        result.control[~whole] = cut.control[part][~whole]
-        result.start[~whole] = cut.start[part][~whole]
-        result.interval[~whole] = cut.interval[part][~whole]
-    return result
-
-
-def _split(arcs: Arcs, at: float | Floats) -> Arcs:
-    """Both parts of arcs of one degree, all first ones before all second ones."""
-    t = np.broadcast_to(at, len(arcs.control))
-    middle = arcs.interval[:, 0] + t * (arcs.interval[:, 1] - arcs.interval[:, 0])
-    first, second = np.empty_like(arcs.control), np.empty_like(arcs.control)
-    points = arcs.control
-    last = points.shape[1] - 1
-    for k in range(last + 1):  # de Casteljau
-        first[:, k] = points[:, 0]
-        second[:, last - k] = points[:, -1]
-        points = (1.0 - t)[:, None, None] * points[:, :-1] + t[:, None, None] * points[:, 1:]
-    between = arcs.start + (second[:, 0] - first[:, 0])
-    return Arcs(
-        np.concatenate([first, second]),
-        np.concatenate([arcs.start, between]),
-        np.concatenate([arcs.degree, arcs.degree]),
-        np.concatenate([arcs.piece, arcs.piece]),
-        np.concatenate(
-            [
-                np.column_stack([arcs.interval[:, 0], middle]),
-                np.column_stack([middle, arcs.interval[:, 1]]),
-            ]
-        ),
-    )
-
-
-def _ends(arcs: Arcs) -> Floats:
-    """Where the last control points lie: (n, 2)."""
-    return np.asarray(arcs.start + (arcs.control[:, -1] - arcs.control[:, 0]))
-
-
-def _together(groups: list[Arcs]) -> Arcs:
-    """The arcs of groups of one degree each, with room for the highest degree."""
-    most = max(group.control.shape[1] for group in groups)
-    padded = [
-        group._replace(control=np.pad(group.control, ((0, 0), (0, most - k), (0, 0))))
-        for group in groups
-        for k in [group.control.shape[1]]
-    ]
-    return Arcs._make(np.concatenate(column) for column in zip(*padded, strict=True))
 
 
 def _closed(boundary: Arclets) -> Arclets:

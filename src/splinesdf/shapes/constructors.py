@@ -169,7 +169,9 @@ def from_points(
     return cls.from_pieces(point_loops(points, smooth=smooth), fill=fill, name=name)
 
 
-def from_contours(cls: type[Shape], contours: Iterable[Contour], *, name: str = "") -> Shape:
+def from_contours(
+    cls: type[Shape], contours: Iterable[Contour] | Contour, *, name: str = ""
+) -> Shape:
     """The region that closed contours of one level enclose, as those of an offset do.
 
     So an offset can be offset again. Lines and parabolas are exact, other conics to a few
@@ -182,10 +184,10 @@ def from_contours(cls: type[Shape], contours: Iterable[Contour], *, name: str = 
     >>> round(ss.Shape.from_contours(ring).box[0], 9)
     -1.0
     """
+    if isinstance(contours, Contour):
+        contours = [contours]
     if not isinstance(contours, Iterable):
-        raise InputError(
-            f"expected a list of contours, got {type(contours).__name__}: give [contour]"
-        )
+        raise InputError(f"expected a list of contours, got {type(contours).__name__}")
     given = list(contours)
     y_down = any(getattr(contour, "y_down", False) for contour in given)
     loops, unit = contour_loops(given), getattr(given[0], "unit", None)

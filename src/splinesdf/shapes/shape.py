@@ -333,9 +333,15 @@ class Shape:
         """Whether points (..., 2) are inside; those on the boundary are not: (...,) of bool."""
         return self.signed_distance(points) < 0.0
 
-    def signed_distance(self, points: ArrayLike, *, max_distance: float | None = None) -> Floats:
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        y: ArrayLike | None = None,
+        *,
+        max_distance: float | None = None,
+    ) -> Floats:
         """`splinesdf.signed_distance` of this shape."""
-        distance: Floats = public("signed_distance")(self, points, max_distance=max_distance)
+        distance: Floats = public("signed_distance")(self, points, y, max_distance=max_distance)
         return distance
 
     def fit(self, tolerance: float | None = None, **options: Any) -> FitResult:

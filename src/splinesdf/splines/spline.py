@@ -97,15 +97,15 @@ class SplineSDF:
     >>> import splinesdf as ss
     >>> sdf = ss.fit(ss.Shape.from_formula("cos(t)", "sin(t)"), tolerance=0.01).spline
     >>> points = [[0.5, 0.0], [0.0, 2.0]]
-    >>> sdf(points).round(1).tolist(), sdf.inside(points).tolist()
-    ([-0.5, 1.0], [True, False])
+    >>> sdf(points).round(1).tolist(), sdf([0.5, 0.0], [0.0, 2.0]).round(1).tolist()
+    ([-0.5, 1.0], [-0.5, 1.0])
     >>> values, gradients = sdf.value_and_gradient(points)
     >>> bool((gradients == sdf.gradient(points)).all())
     True
     >>> sdf.normal(points).round(1).tolist(), sdf.closest_point(points).round(1)[0].tolist()
     ([[1.0, 0.0], [0.0, 1.0]], [1.0, 0.0])
-    >>> sdf.hessian(points).shape, sdf.curvature(points).shape
-    ((2, 2, 2), (2,))
+    >>> sdf.inside(points).tolist(), sdf.hessian(points).shape, sdf.curvature(points).shape
+    ([True, False], (2, 2, 2), (2,))
     >>> len(sdf.contours(0.0)), sdf.grid(5, 4).distance.shape
     (1, (4, 5))
     >>> axes = sdf.plot()
@@ -125,9 +125,8 @@ class SplineSDF:
     def __post_init__(self) -> None:
         ordinates, numbers = as_floats(self.ordinates, "ordinates"), self.element.numbers
         if ordinates.ndim != 2 or ordinates.shape[1] != numbers:
-            raise InputError(
-                f"expected ordinates of shape (n_cells, {numbers}), got {ordinates.shape}"
-            )
+            shape = f"(n_cells, {numbers})"
+            raise InputError(f"expected ordinates of shape {shape}, got {ordinates.shape}")
         object.__setattr__(self, "ordinates", ordinates)
         if self.shape is None:
             return
@@ -150,10 +149,12 @@ class SplineSDF:
         """The box on which the spline is defined: xmin, ymin, xmax, ymax."""
         return self.mesh.domain
 
-    def __call__(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
-        """Values, shape (..., 2) -> (...,)."""
-        array = as_points(points)
-        return self._evaluate(array, 0, outside)[0].reshape(array.shape[:-1])
+    def __call__(
+        self, points: ArrayLike, y: ArrayLike | None = None, *, outside: Outside = "extend"
+    ) -> Floats:
+        """Values at points of shape (..., 2), or at x and y that broadcast to (...): (...,)."""
+        at = as_points(points, y)
+        return self._evaluate(at, 0, outside)[0].reshape(at.shape[:-1])
 
     def grid(
         self,
@@ -207,8 +208,7 @@ class SplineSDF:
     def hessian(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
         """Second derivatives, shape (..., 2) -> (..., 2, 2): constant on each triangle."""
         array = as_points(points)
-        second = self._evaluate(array, 2, outside)[2]
-        return second[:, [0, 1, 1, 2]].reshape(*array.shape, 2)
+        return self._evaluate(array, 2, outside)[2][:, [0, 1, 1, 2]].reshape(*array.shape, 2)
 
     def normal(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
         """Unit vectors along the gradient, shape (..., 2) -> (..., 2); outward at the curve.

@@ -4,11 +4,10 @@
 import { HALVED, lineAt, visibleLeaves } from './tree.js';
 import { mixed } from './colors.js';
 
-// What of a gradient above 1 lines stay whole for: there they reach over more of the value.
-const STEEPEST = 1.25;
-// The slope that a line's width is measured by, at least, as a share of a distance's slope 1: on a
-// ridge the gradient vanishes and lines would become as wide as the window.
-const FLATTEST = 0.25;
+// The slope that a line's width is measured by, at least and at most, as shares of a distance's
+// slope 1: on a ridge the gradient vanishes and lines would become as wide as the window; where it
+// is steep, as in cells far wider than high, they reach over more of the value than is looked at.
+const FLATTEST = 0.25, STEEPEST = 1.25;
 // Shares with which lines are mixed in, and half the widths of the strong ones, in pixels of CSS.
 const FAINT = 0.45, MESH = 0.6, ZERO = 1.1, LEVEL = 1.3;
 // Pixels a cell below which the mesh begins to fade, and below which it is gone.
@@ -74,7 +73,8 @@ function meshed(color, s, t, w, h, mesh, share) {
 
 /** A color with level lines over it; `gradient` is a pixel's change of the value v. */
 function lined(color, v, gradient, band, off, job) {
-  const slope = Math.max(gradient, FLATTEST / job.scale), faint = job.bands ? 0.5 + job.thick / 2 - band / slope : 0;
+  const slope = Math.min(Math.max(gradient, FLATTEST / job.scale), STEEPEST / job.scale);
+  const faint = job.bands ? 0.5 + job.thick / 2 - band / slope : 0;
   if (faint > 0) color = mixed(color, job.line, FAINT * Math.min(1, faint));
   const zero = ZERO * job.thick + 0.5 - Math.abs(v) / slope;
   if (zero > 0) color = mixed(color, job.line, zero > 1 ? 1 : zero);

@@ -16,7 +16,7 @@ void shade(float d, vec2 g, float edge, float meshShare) {
     result = vec4(bits & 255u, (bits >> 8) & 255u, (bits >> 16) & 255u, bits >> 24) / 255.0;
     return;
   }
-  float slope = max(length(g), 0.25 * uPixel), v = d + uBase, f = d / uSpacing + uPhase;
+  float slope = clamp(length(g), 0.25 * uPixel, 1.25 * uPixel), v = d + uBase, f = d / uSpacing + uPhase;
   vec3 color = v < 0.0 ? uInside : uOutside;
   color = mix(color, vec3((color.r + color.g + color.b) / 3.0), 0.55 * min(1.0, abs(v) / uRange));
   if (edge < 1.1) color = mix(color, uMesh, meshShare * min(1.0, 1.1 - edge));
@@ -42,6 +42,11 @@ void leaf(vec4 a, vec4 b, vec4 e, vec2 st, vec2 inv, float meshShare) {
 
 const HEAD = '#version 300 es\nprecision highp float; precision highp int;\n';
 
+// Vertices are snapped to 1/16 of a pixel by software, so that a pixel near a side could get the
+// neighbor's quadratic. Quads are grown by more than that, and a pixel's own place decides which
+// cell it is in: SLACK, in pixels, is more than float32 loses there, so that no crack opens.
+const GROWN = '0.125', SLACK = '0.001';
+
 export const QUADS_VERTEX = `${HEAD}
 layout(location = 0) in vec4 box; layout(location = 1) in vec4 a; layout(location = 2) in vec4 b;
 layout(location = 3) in vec4 e; layout(location = 4) in float share;
@@ -51,7 +56,8 @@ flat out vec4 va, vb, ve, vi;
 flat out float vm;
 void main() {
   // Pixels from the view's center; sides are the neighbor's own numbers, so that no crack opens.
-  vec2 corner = vec2((gl_VertexID & 1) == 1 ? box.z : box.x, (gl_VertexID >> 1) == 1 ? box.w : box.y);
+  vec2 corner = vec2((gl_VertexID & 1) == 1 ? box.z + ${GROWN} : box.x - ${GROWN},
+                     (gl_VertexID >> 1) == 1 ? box.w + ${GROWN} : box.y - ${GROWN});
   vec2 turned = vec2(1.0, uUp);
   gl_Position = vec4(corner * turned / uHalf, 0.0, 1.0);
   va = a; vb = b; ve = e; vm = share;
@@ -63,7 +69,11 @@ export const QUADS_FRAGMENT = `${HEAD}
 flat in vec4 va, vb, ve, vi;
 flat in float vm;
 ${SHADE}
-void main() { leaf(va, vb, ve, (gl_FragCoord.xy - vi.zw) * vi.xy, vi.xy, vm); }`;
+void main() {
+  vec2 st = (gl_FragCoord.xy - vi.zw) * vi.xy, beyond = (abs(st) - 0.5) / abs(vi.xy);
+  if (max(beyond.x, beyond.y) > ${SLACK}) discard;
+  leaf(va, vb, ve, st, vi.xy, vm);
+}`;
 
 export const WALK_VERTEX = `${HEAD}
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
