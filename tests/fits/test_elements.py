@@ -115,7 +115,9 @@ def test_what_a_cubic_spline_does_not_answer_is_said() -> None:
     assert np.array_equal(grid.distance, spline(nodes))
     with pytest.raises(ss.InputError, match="uniform for the cubic element"):
         ss.fit(CIRCLE, tolerance=0.1, element="cubic")
-    with pytest.raises(ss.InputError, match="element of quadratic, cubic, got 'septic'"):
+    with pytest.raises(ss.InputError, match="uniform for the cubic element, got 'tensor'"):
+        ss.fit(CIRCLE, tolerance=0.1, element="cubic", space="tensor")
+    with pytest.raises(ss.InputError, match="element of quadratic, cubic, quartic, got 'septic'"):
         ss.fit(CIRCLE, tolerance=0.1, element="septic")
     with pytest.raises(TypeError, match="unexpected keyword argument 'bands'"):
         ss.fit(CIRCLE, tolerance=0.1, bands=(0, 1))  # type: ignore[call-arg]

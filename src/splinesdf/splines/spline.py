@@ -183,7 +183,7 @@ class SplineSDF:
         box = self.domain if domain is None else check_domain(domain)
         x, y = grid_nodes(nx, ny, box)
         few = len(x) * len(y) < _NODES * len(self.ordinates)
-        if few or self.element.power_form is None:
+        if few or self.element.degree != 2:
             points = np.stack(np.meshgrid(x, y), axis=-1)
             return DistanceGrid(x, y, self(points, outside=outside))
         distance = values_at_nodes(self.mesh, self._frames, self._table, x, y)
