@@ -162,12 +162,16 @@ def test_a_fit_keeps_its_tolerance(
         assert again.made == spline.made
 
 
-def test_what_a_cubic_spline_does_not_answer_is_said() -> None:
-    spline = ss.interpolate(CIRCLE, (8, 8), element="cubic").spline
-    with pytest.raises(ss.InputError, match="level sets, got a cubic one"):
-        spline.contours(0.0)
-    with pytest.raises(ss.InputError, match='outside="nan" of it, got a cubic one'):
-        spline([(9.0, 9.0)])
+@pytest.mark.parametrize("element", ["cubic", "quartic"])
+def test_what_such_a_spline_does_not_answer_is_said(element: str) -> None:
+    from splinesdf.web.page import write_page
+
+    spline = ss.interpolate(CIRCLE, (8, 8), element=element).spline
+    for call in (spline.triangles, spline.to_skfem, spline.to_glsl, spline.coefficients):
+        with pytest.raises(ss.InputError, match="expected a quadratic spline"):
+            call()
+    with pytest.raises(ss.InputError, match="expected a quadratic spline for the page"):
+        write_page("never.html", spline)
     assert np.isnan(spline([(9.0, 9.0)], outside="nan")).all()
     grid = spline.grid(5, 4)
     nodes = np.stack(np.meshgrid(grid.x, grid.y), axis=-1)
