@@ -28,6 +28,7 @@ DATA = json.loads((Path(__file__).parents[1] / "data" / "box_splines.json").read
 BOX_SPLINES = {
     "quadratic": ("M_1111", (1, 0), {"V": "V", "W": "W", "S": "S"}),
     "cubic": ("M_2210", (1, 1), {"S": "221"}),
+    "quartic": ("M_2211", (2, 1), {"O": "2211O", "C": "2211C", "D": "2211D", "V": "2211V"}),
 }
 CUBIC = ELEMENTS["cubic"]
 POINTS = np.random.default_rng(3).random((20_000, 2))
@@ -81,9 +82,11 @@ def naive_reparametrized(degree: int, corners: np.ndarray, ordinates: np.ndarray
 def test_the_b_spline_has_the_exact_ordinates(name: str) -> None:
     element, (data, center, _) = ELEMENTS[name], BOX_SPLINES[name]
     cells = DATA["bsplines"][data]["cells"]
-    for a, b in product((-1, 0, 1), repeat=2):
-        block = np.zeros((1, 9))
-        block[0, 3 * (a + 1) + b + 1] = 1.0
+    side = 4 if name == "quartic" else 3
+    assert element.from_coefficients.shape == (element.numbers, side * side)
+    for a, b in product(range(-1, side - 1), repeat=2):
+        block = np.zeros((1, side * side))
+        block[0, side * (a + 1) + b + 1] = 1.0
         (found,) = element.ordinates(element.cell_numbers(block))
         # A cell whose neighbor (a, b) has the B-spline is this one of the B-spline's own cells.
         exact = numbers(cells[f"{center[0] - a},{center[1] - b}"])

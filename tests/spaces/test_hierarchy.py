@@ -43,7 +43,7 @@ def test_naive_equals_fast(shape: tuple[int, int], seed: int) -> None:
 def test_all_four_quarters_are_the_block_of_nine(shape: tuple[int, int]) -> None:
     random = np.random.default_rng(5)
     mesh = Quadtree.uniform((0.0, 0.0, 1.0, 1.0), *shape)
-    nodes = roots(shape)
+    nodes = roots(shape, 1)
     for _ in range(6):
         marked = random.random(len(mesh.leaves)) < 0.1
         bad = leaves(nodes)[marked]
@@ -56,7 +56,7 @@ def test_all_four_quarters_are_the_block_of_nine(shape: tuple[int, int]) -> None
 
 def test_a_bad_quarter_gets_functions_of_the_next_level() -> None:
     random = np.random.default_rng(6)
-    nodes = roots((4, 4))
+    nodes = roots((4, 4), 1)
     for _ in range(5):
         cells = leaves(nodes)
         bad = random.choice(cells, 3, replace=False)

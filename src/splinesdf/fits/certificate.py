@@ -51,6 +51,13 @@ _GRAIN = 256 * 2.220446049250313e-16
 _MOST_OPEN = 400_000
 # Cells at a time whose polynomials are cut into quadratics: 100 kB each.
 _MOST_CELLS = 512
+# Share of what an error need not be known below that quadratics may miss of the spline, to tell
+# good cells from bad ones, and to know the largest error of all. Smaller: four times the triangles
+# for each eighth of it, of degree 3; larger: bounds are that much wider.
+ROUGH, _MISSED = 2e-2, 2e-3
+# So many times that in cells with as large an error at the center: most are bad. More: more are
+# halved that are not, as in bands that the center is not in; fewer: bad ones are cut in vain.
+_HOPELESS = 20.0
 
 
 # The corner (SW SE NW NE) of a cell at which each of its eighths lies.
@@ -68,6 +75,7 @@ class Wanted(NamedTuple):
     # other way round. A spline that is wrong there has its level somewhere beside them, and the
     # error in the band does not get smaller by halving cells at that level only.
     around: bool = False
+    missed: float = _MISSED  # of the threshold, see there
     proved: bool = True  # otherwise what stays open is sampled and taken as it is
 
 
@@ -110,13 +118,25 @@ def cell_errors(
         return Known(*(np.concatenate(values) for values in zip(*found, strict=True)))
     boxes = spline.mesh.local_boxes[cells] + np.tile(spline.domain[:2] - target.origin, 2)
     count = len(cells)
-    first = pieces(spline.element, boxes, spline.ordinates[cells], wanted.threshold)
-    middles = 0.5 * (boxes[:, :2] + boxes[:, 2:])
+    middles, largest = 0.5 * (boxes[:, :2] + boxes[:, 2:]), target.largest(boxes)
+
+    def meets(cell: Ints, corners: Floats, least: Floats, most: Floats) -> Bools:
+        # The distance is 1-Lipschitz, and known in the middle of the cell.
+        apart = np.linalg.norm(corners.reshape(-1, 3, 2) - middles[cell, None], axis=2).max(axis=1)
+        grain = _GRAIN * (largest + np.abs(center[cell]))
+        reach = apart + grain
+        taken, exact = (least - grain, most + grain), (center[cell] - reach, center[cell] + reach)
+        return _counts(taken, exact, bands[:, 0, None], bands[:, 1, None], wanted.around)
+
+    numbers, asked = spline.ordinates[cells], meets if len(bands) else None
+    wrong = np.abs(spline.element.at_centers(numbers) - center)
+    allowed = wanted.missed * np.clip(wrong, wanted.threshold, _HOPELESS * wanted.threshold)
+    first = pieces(spline.element, boxes, numbers, allowed, asked)
     search = _Search(
         target=target,
         bands=bands,
         wanted=wanted,
-        largest=target.largest(boxes),
+        largest=largest,
         anchor=np.column_stack([middles, center, first.missed]),
         low=np.zeros(8 * count),
         high=np.zeros(8 * count),

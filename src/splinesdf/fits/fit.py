@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf.errors import ToleranceNotReached
-from splinesdf.fits.certificate import Wanted, cell_errors, largest_error
+from splinesdf.fits.certificate import ROUGH, Wanted, cell_errors, largest_error
 from splinesdf.fits.request import Band, FitOptions, fit_options, request_of
 from splinesdf.fits.target import ShapeTarget
 from splinesdf.fits.trials import Trial
@@ -291,7 +291,7 @@ def _rounds(
     asked = request_of(target, tolerance, options)
     tolerance, bands, certify = asked.tolerance, asked.bands, asked.certify
     trial = Trial(target, shape, asked.space, asked.operator)
-    wanted = Wanted(threshold=tolerance, enough=tolerance, around=True, proved=certify)
+    wanted = Wanted(tolerance, enough=tolerance, around=True, missed=ROUGH, proved=certify)
     history: tuple[FitStep, ...] = ()
     while True:
         spline, cells = trial.spline, trial.changed

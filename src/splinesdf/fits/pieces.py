@@ -3,26 +3,33 @@
 Of a quadratic element the four triangles of a cell are that. A polynomial of higher degree is
 replaced, on triangles halved until it matters little, by the quadratic through its values at the
 corners and in the middles of the sides; what that misses is bounded by the Bernstein-Bézier
-ordinates of the difference, and all that is proved allows for it.
+ordinates of the difference, and all that is proved allows for it. Triangles that cannot meet a band
+are left out on the way.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
-from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.ground.arrays import Bools, Floats, Ints
 from splinesdf.spaces.element import Element, indices, reparametrized
 
 # From the order AA AB AC BB BC CC of an element to AA BB CC AB BC CA of the kernels.
 _ORDER = [0, 3, 5, 1, 4, 2]
-# Share of what an error need not be known below that a quadratic may miss of the spline. Smaller:
-# four times the triangles for each eighth of it, of degree 3; larger: bounds are that much wider.
-_MISSED = 2e-3
-# How often a cell's triangles are quartered for that at most: 1024 triangles a cell.
-_QUARTERINGS = 4
+# How often a cell's triangles are quartered at most until quadratics miss little: 1024 triangles a
+# cell. In bands only those that can meet one are: along a level they double where others quadruple.
+_QUARTERINGS, _QUARTERINGS_IN_BANDS = 4, 9
+# Triangles of all cells together are not quartered beyond that: 120 MB. More: memory; fewer:
+# quadratics miss more of the spline, and bounds are that much wider.
+_MOST = 400_000
+
+# Whether parts count, from the cells that they are of, their corners (n, 6), and the least and
+# the most of the spline on them.
+Counts = Callable[[Ints, Floats, Floats, Floats], Bools]
 
 
 class Pieces(NamedTuple):
@@ -34,43 +41,83 @@ class Pieces(NamedTuple):
     missed: Floats  # (cells,) the largest difference between quadratics and spline
 
 
-def pieces(element: Element, boxes: Floats, numbers: Floats, threshold: float) -> Pieces:
-    """The pieces of cells.
+class _Parts(NamedTuple):
+    """Triangles on which the spline is a polynomial of its degree."""
+
+    cell: Ints  # (n,)
+    eighth: Ints  # (n,)
+    corners: Floats  # (n, 6)
+    ordinates: Floats  # (n, k)
+
+    def take(self, rows: Bools) -> _Parts:
+        """Some of them."""
+        return _Parts(self.cell[rows], self.eighth[rows], self.corners[rows], self.ordinates[rows])
+
+
+def pieces(
+    element: Element, boxes: Floats, numbers: Floats, allowed: Floats, counts: Counts | None = None
+) -> Pieces:
+    """The pieces of cells, of an element of a higher degree only those that count.
 
     Parameters
     ----------
     element : Element
     boxes, numbers : ndarray, shapes (n, 4), (n, element.numbers)
-    threshold : float
-        What an error need not be known below.
+    allowed : ndarray, shape (n,)
+        What quadratics may miss of the spline, where so many triangles can be had.
+    counts : callable, optional
     """
     ordinates, corners = element.ordinates(numbers), _corners(boxes)
     count = len(boxes)
     if element.degree == 2:
         triangles = np.concatenate([corners, ordinates[..., _ORDER]], axis=2).reshape(-1, 12)
         return Pieces(np.arange(8 * count).reshape(-1, 2), triangles, boxes, np.zeros(count))
+    rest = _Parts(
+        np.repeat(np.arange(count), 4),
+        2 * np.arange(4 * count),
+        corners.reshape(-1, 6),
+        ordinates.reshape(4 * count, ordinates.shape[2]),
+    )
+    to_quadratic, to_missed = _quadratics(element.degree)
+    most = _QUARTERINGS if counts is None else _QUARTERINGS_IN_BANDS
     missed = np.zeros(count)
-    eighths, found = [], []
-    rest = np.arange(count)
-    for quarterings in range(1, _QUARTERINGS + 1):  # at least once: a part lies in one eighth
-        parts, to_quadratic, to_difference = _subdivision(element.degree, quarterings)
-        difference = np.abs(np.einsum("pdk,ntk->ntpd", to_difference, ordinates[rest]))
-        missed[rest] = difference.max(axis=(1, 2, 3), initial=0.0)
-        done = (missed[rest] <= _MISSED * threshold) | (quarterings == _QUARTERINGS)
-        here = rest[done]
-        at = np.einsum("pck,ntkx->ntpcx", parts, corners[here].reshape(-1, 4, 3, 2))
-        quadratic = np.einsum("pqk,ntk->ntpq", to_quadratic, ordinates[here])
-        shape = (len(here), 4, len(parts), 6)
-        found.append(np.concatenate([at.reshape(shape), quadratic], axis=3).reshape(-1, 12))
-        # The first half of the parts is on A's side of a triangle, see `kernels.enclosure`.
-        half = 2 * np.arange(len(parts))[None] // len(parts)
-        eighth = 8 * here[:, None, None] + 2 * np.arange(4)[:, None] + half
-        eighths.append(eighth.reshape(-1))
-        rest = rest[~done]
-    triangles, eighth = np.concatenate(found), np.concatenate(eighths)
+    found = [(np.empty(0, dtype=np.int64), np.empty((0, 12)))]
+    for number in range(1, most + 1):  # at least once: a part lies in one eighth
+        rest = _quartered(element.degree, rest, first=number == 1)
+        if counts is not None:
+            low, high = rest.ordinates.min(axis=1), rest.ordinates.max(axis=1)
+            rest = rest.take(counts(rest.cell, rest.corners, low, high))
+        lost = np.abs(np.einsum("qk,nk->nq", to_missed, rest.ordinates)).max(axis=1, initial=0.0)
+        done = lost <= allowed[rest.cell]
+        if number == most or 4 * len(rest.cell) > _MOST:
+            done[:] = True
+        np.maximum.at(missed, rest.cell[done], lost[done])
+        here = rest.take(done)
+        quadratics = np.einsum("qk,nk->nq", to_quadratic, here.ordinates)
+        triangles = np.concatenate([here.corners, quadratics], axis=1)
+        found.append((here.eighth, triangles))
+        rest = rest.take(~done)
+        if len(rest.cell) == 0:
+            break
+    eighth, triangles = (np.concatenate(values) for values in zip(*found, strict=True))
     at = triangles[:, :6].reshape(-1, 3, 2)
     around = np.concatenate([at.min(axis=1), at.max(axis=1)], axis=1)
     return Pieces(np.stack([eighth, eighth], axis=1), triangles, around, missed)
+
+
+def _quartered(degree: int, parts: _Parts, *, first: bool) -> _Parts:
+    """The four quarters of each of n triangles; at first the eighths that they are in are found."""
+    shares, moved = _quarters(degree)
+    corners = np.einsum("pck,nkx->npcx", shares, parts.corners.reshape(-1, 3, 2))
+    ordinates = np.einsum("pdk,nk->npd", moved, parts.ordinates)
+    # The first half of the quarters is on A's side of a triangle, see `kernels.enclosure`.
+    half = np.array([0, 0, 1, 1]) if first else np.zeros(4, dtype=np.int64)
+    return _Parts(
+        np.repeat(parts.cell, 4),
+        (parts.eighth[:, None] + half).reshape(-1),
+        corners.reshape(-1, 6),
+        ordinates.reshape(-1, ordinates.shape[2]),
+    )
 
 
 def _corners(boxes: Floats) -> Floats:
@@ -87,19 +134,27 @@ def _corners(boxes: Floats) -> Floats:
 
 
 @cache
-def _subdivision(degree: int, quarterings: int) -> tuple[Floats, Floats, Floats]:
-    """Parts of a triangle that is quartered some times, by barycentric coordinates (p, 3, 3).
+def _quarters(degree: int) -> tuple[Floats, Floats]:
+    """The halves of both halves of a triangle, by barycentric coordinates (4, 3, 3).
 
-    And the matrices from the triangle's ordinates to the quadratics on the parts, (p, 6, k), and to
-    what these miss, as ordinates of the degree, (p, k, k).
+    And the matrices from the triangle's ordinates to theirs, (4, k, k).
     """
     parts = [np.eye(3)]
-    for _ in range(2 * quarterings):
+    for _ in range(2):
         halved = []
         for a, b, c in parts:
             middle = 0.5 * (a + b)
             halved += [np.array([c, a, middle]), np.array([b, c, middle])]
         parts = halved
+    return np.stack(parts), np.stack([reparametrized(degree, part) for part in parts])
+
+
+@cache
+def _quadratics(degree: int) -> tuple[Floats, Floats]:
+    """Matrices from a triangle's ordinates to its quadratic, (6, k), and what that misses, (k, k).
+
+    What it misses are ordinates of the degree.
+    """
     every = indices(degree)
     values = np.zeros((6, len(every)))
     for row, corners in zip(values, _NODES, strict=True):
@@ -108,9 +163,7 @@ def _subdivision(degree: int, quarterings: int) -> tuple[Floats, Floats, Floats]
     quadratic = np.stack(
         [a, b, c, 2 * ab - (a + b) / 2, 2 * bc - (b + c) / 2, 2 * ca - (c + a) / 2]
     )
-    lifted = _elevation(degree)
-    moved = np.stack([reparametrized(degree, part) for part in parts])
-    return np.stack(parts), quadratic @ moved, moved - lifted @ quadratic @ moved
+    return quadratic, np.eye(len(every)) - _elevation(degree) @ quadratic
 
 
 # Corners A B C and middles of AB BC CA, by barycentric coordinates.

@@ -3,7 +3,8 @@
 On a grid a refinement moves all samples. On a quadtree a node keeps the distance at its center; and
 that at its lower left corner, if the operator has samples in corners: a corner belongs to the cell
 right of and above it. Of four children one has its parent's corner and one its center there, so
-that a node costs 1.5 distances, and 1 without corners.
+that a node costs 1.5 distances, and 1 without corners. Centers are kept in any case, as the
+certificate begins with them; all samples of the quartic element are in corners.
 """
 
 from __future__ import annotations
@@ -64,7 +65,9 @@ class TreeSamples:
 
     def __init__(self, target: Target, space: HierarchicalSpace, operator: Operator) -> None:
         self._target, self._space, self.count = target, space, 0
-        self._has_corners = bool(np.any(np.array(operator.offsets) % 1.0))
+        # From the centers of the cells that B-splines belong to, to their own.
+        self._shift = space.element.center - 0.5
+        self._has_corners = bool(np.any((np.array(operator.offsets) + self._shift) % 1.0))
         every = np.arange(len(space.places))
         self._centers = self._ask(every, np.zeros((len(every), 2)))
         self._corners = np.full(len(every), np.nan)
@@ -79,10 +82,13 @@ class TreeSamples:
     def at(self, bsplines: Ints, offsets: Floats) -> Floats:
         """At offsets (n, 2) in cells from the centers of B-splines (n,)."""
         # The cells in whose center, or in whose lower left corner, the samples lie.
+        offsets = offsets + self._shift
+        near, ring = self._space.nodes.near, self._space.element.beyond
         in_corner = np.all(offsets % 1.0 == 0.5, axis=1)
-        shift = np.clip(np.ceil(offsets), -1, 1).astype(np.int64)
+        shift = np.clip(np.ceil(offsets), -ring, ring).astype(np.int64)
         there = np.all(shift - 0.5 * in_corner[:, None] == offsets, axis=1)
-        other = self._space.nodes.near[bsplines, 4 + 3 * shift[:, 0] + shift[:, 1]]
+        place = near.shape[1] // 2 + (2 * ring + 1) * shift[:, 0] + shift[:, 1]
+        other = near[bsplines, place]
         other = np.where(there, other, -1)
         known = np.maximum(other, 0)
         values = np.where(in_corner, self._corners[known], self._centers[known])
@@ -119,9 +125,10 @@ class TreeSamples:
             same = (quarter == 0) & (nodes.level[every] == level)
             self._corners[every[same]] = self._corners[parents[same]]
 
-    def _ask(self, bsplines: Ints, offsets: Floats) -> Floats:
-        self.count += len(bsplines)
-        return self._target.values(self._space.points(bsplines, offsets))
+    def _ask(self, nodes: Ints, offsets: Floats) -> Floats:
+        """At offsets (n, 2) in cells from the centers of nodes."""
+        self.count += len(nodes)
+        return self._target.values(self._space.points(nodes, offsets - self._shift))
 
 
 def samples_on(target: Target, space: Space, operator: Operator) -> Samples:

@@ -3,7 +3,7 @@
 All that hierarchy, quasi-interpolation, certificate, evaluation and archive know of a spline's
 cells they ask of its element, so that another box spline is one more file like `quadratic`:
 
-    3 x 3 coefficients around a cell ─ from_coefficients ─→ its numbers ─ to_ordinates ─→ ordinates
+    coefficients around a cell ─ from_coefficients ─→ its numbers ─ to_ordinates ─→ ordinates
 
 Whatever the split of a cell into triangles, ordinates are those of its four triangles S E N W
 between a side and the center (see `splinesdf.meshes`): a split by one diagonal is coarser, and its
@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from math import factorial
+from math import factorial, isqrt
 
 import numpy as np
 
@@ -84,15 +84,19 @@ class Operator:
 class Element:
     """A family of B-splines, one a cell and one for each cell of a ring around the domain.
 
+    Those that reach into a cell are of the 3 x 3 cells around it, from one before to one beyond; or
+    of 4 x 4, from one before to two beyond, where a B-spline's center is its cell's lower left
+    corner.
+
     Attributes
     ----------
     name : str
-        "quadratic", "cubic".
+        "quadratic", "cubic", "quartic".
     bspline : str
         The box spline: how often it has the directions (1,0) (0,1) (1,1) (1,-1).
     degree : int
-    from_coefficients : ndarray, shape (numbers, 9)
-        A cell's numbers from the coefficients of the 3 x 3 cells around it, j running first.
+    from_coefficients : ndarray, shape (numbers, 9 or 16)
+        A cell's numbers from the coefficients of the cells around it, j running first.
     to_ordinates : ndarray, shape (4, (degree + 1) (degree + 2) / 2, numbers)
         The Bernstein-Bézier ordinates of the triangles S E N W from a cell's numbers.
     mask : ndarray, shape (4, k, 3)
@@ -105,10 +109,12 @@ class Element:
         "bands", "everywhere" in the domain, and on a "tensor" grid.
     spaces : tuple of str
         The kinds of space that it spans, see `splinesdf.spaces.space`.
+    center : float
+        Where a B-spline's center is in its cell, each way: 0.5, or 0 for the lower left corner.
     power_form : callable, optional
-        From numbers (n, numbers) to the truncated powers (n, 8) that
-        `splinesdf.spaces.kernels.evaluation` reads. Without it a cell is evaluated triangle by
-        triangle.
+        From numbers (n, numbers) to the truncated powers that `splinesdf.spaces.kernels` reads:
+        (n, 8) of degree 2, in `evaluation`, (n, 15) of degree 4, in `quartics`. Without it a cell
+        is evaluated triangle by triangle.
     """
 
     name: str
@@ -120,12 +126,18 @@ class Element:
     operators: Mapping[str, Operator]
     defaults: Mapping[str, str]
     spaces: tuple[str, ...]
+    center: float = 0.5
     power_form: Callable[[Floats], Floats] | None = None
 
     @property
     def numbers(self) -> int:
         """How many numbers a cell is."""
         return len(self.from_coefficients)
+
+    @property
+    def beyond(self) -> int:
+        """How many cells beyond a cell, to the right or above, have B-splines that reach it."""
+        return isqrt(self.from_coefficients.shape[1]) - 2
 
     def operator(self, name: str) -> Operator:
         """The quasi-interpolant of a name, or an `InputError`."""
@@ -135,12 +147,15 @@ class Element:
         return self.operators[name]
 
     def default_operator(self, space: str, in_bands: bool) -> str:
-        """The name of the quasi-interpolant that a fit uses unless told otherwise."""
+        """The name of the quasi-interpolant that a fit uses unless told otherwise.
+
+        Also in spaces that the element does not span, which are refused with their names.
+        """
         asked = "tensor" if space == "tensor" else "bands" if in_bands else "everywhere"
-        return self.defaults[asked]
+        return self.defaults.get(asked, self.defaults["given"])
 
     def cell_numbers(self, blocks: Floats) -> Floats:
-        """Numbers of cells from the coefficients around them, (n, 9) -> (n, numbers)."""
+        """Numbers of cells from the coefficients around them, (n, 9 or 16) -> (n, numbers)."""
         return _product(blocks, self.from_coefficients)
 
     def ordinates(self, numbers: Floats) -> Floats:

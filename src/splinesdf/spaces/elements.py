@@ -6,8 +6,9 @@ from splinesdf.errors import InputError
 from splinesdf.spaces.cubic import CUBIC
 from splinesdf.spaces.element import Element
 from splinesdf.spaces.quadratic import QUADRATIC
+from splinesdf.spaces.quartic import QUARTIC
 
-ELEMENTS = {element.name: element for element in (QUADRATIC, CUBIC)}
+ELEMENTS = {element.name: element for element in (QUADRATIC, CUBIC, QUARTIC)}
 
 
 def find_element(name: object) -> Element:

@@ -5,7 +5,8 @@ The basis is that of Giannelli, Jüttler and Speleers (THB-splines, 2012).
 The coefficient of function (i, j) of level l is the quasi-interpolant's functional of that level
 if the function's whole support, the 3 x 3 cells around (i, j), lies in cells of level l or finer;
 else it comes from level l - 1 by subdivision. Then every leaf is an ordinary cell of its level, and
-the spline is C¹ across levels.
+the spline is as smooth across levels as within. (The support of the quartic element's functions is
+4 x 4 cells, and its mask another one.)
 
     level l - 1:  ·   ·   ·         a child's coefficient by subdivision: half its parent's and
                   · [o o] ·         a quarter each of the parent's neighbors on the child's sides
@@ -21,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
+from math import isqrt
 
 import numpy as np
 
@@ -84,7 +86,8 @@ class HierarchicalSpace:
             return self.grown
         mesh = self.mesh
         split = mesh.child >= 0
-        return _split(roots(mesh.shape), np.column_stack([mesh.level, mesh.index])[split])
+        first = roots(mesh.shape, self.element.beyond)
+        return _split(first, np.column_stack([mesh.level, mesh.index])[split])
 
     @property
     def places(self) -> Ints:
@@ -110,7 +113,7 @@ class HierarchicalSpace:
         """Places from the centers of B-splines, offsets (k, 2) in cells, as points (k, 2)."""
         nodes = self.nodes
         side = self._roots * np.exp2(-nodes.level[bsplines].astype(np.float64))[:, None]
-        place = nodes.place[bsplines] + (0.5 + offsets)
+        place = nodes.place[bsplines] + (self.element.center + offsets)
         return np.asarray(np.array(self.mesh.domain[:2]) + place * side)
 
     def numbers(self, coefficients: Floats) -> Floats:
@@ -125,18 +128,28 @@ class HierarchicalSpace:
         )
         every = np.empty(len(coefficients))
         fill(nodes, mask, _coarse_first(nodes), self.own, coefficients, every)
-        around = np.empty((len(cells), 9))
+        around = np.empty((len(cells), self.element.from_coefficients.shape[1]))
         blocks(nodes, mask, cells, every, around)
         return self.element.cell_numbers(around)
 
     def refined(self, bad: Ints, quarters: Bools) -> HierarchicalSpace:
-        """The 2 x 2 cells around the corner at each bad quarter of bad cells halved."""
+        """The 2 x 2 cells around the corner at each bad quarter of bad cells halved.
+
+        Of functions over 4 x 4 cells a new one alone cannot lift a quarter: all nine around.
+        """
+        if self.element.beyond > 1:
+            quarters = np.ones_like(quarters)
         nodes = refined(self.nodes, self.cells[bad], quarters)
         return HierarchicalSpace.of_nodes(nodes, self.mesh.domain, self.element)
 
     def evaluator(self, table: Floats) -> Callable[[Evaluated], int]:
         """A function that fills values and derivatives from the element's table of all cells."""
-        from splinesdf.spaces.kernels.evaluation import evaluate_tree  # Numba loads only when used
+        # Numba loads only when used.
+        if self.element.degree == 4:
+            from splinesdf.spaces.kernels.quartics import evaluate_quartic_tree
+
+            return partial(evaluate_quartic_tree, np.array(self.mesh.domain), self._ways, table)
+        from splinesdf.spaces.kernels.evaluation import evaluate_tree
 
         return partial(evaluate_tree, np.array(self.mesh.domain), self._ways, table)
 
@@ -156,19 +169,22 @@ class HierarchicalSpace:
         return ways
 
 
-def roots(shape: tuple[int, int]) -> Nodes:
-    """The tree of m x n roots and the ring around them."""
+def roots(shape: tuple[int, int], ring: int) -> Nodes:
+    """The tree of m x n roots and the ring around them, so many roots wide."""
     m, n = shape
-    index = np.stack(np.meshgrid(np.arange(-1, m + 1), np.arange(-1, n + 1), indexing="ij"), -1)
-    count = (m + 2) * (n + 2)
+    along = [np.arange(-ring, count + ring) for count in (m, n)]
+    index = np.stack(np.meshgrid(*along, indexing="ij"), -1)
+    count = (m + 2 * ring) * (n + 2 * ring)
     level, child = np.zeros(count, dtype=np.int64), np.full(count, -1)
-    return _linked(np.array([m, n]), level, index.reshape(-1, 2), child)
+    return _linked(np.array([m, n]), level, index.reshape(-1, 2), child, (2 * ring + 1) ** 2)
 
 
-def _inside(shape: tuple[int, int]) -> Ints:
+def _inside(nodes: Nodes) -> Ints:
     """The roots in the domain."""
-    m, n = shape
-    return np.arange((m + 2) * (n + 2)).reshape(m + 2, n + 2)[1:-1, 1:-1].reshape(-1)
+    m, n = (int(count) for count in nodes.shape)
+    ring = isqrt(nodes.near.shape[1]) // 2
+    every = np.arange((m + 2 * ring) * (n + 2 * ring)).reshape(m + 2 * ring, n + 2 * ring)
+    return every[ring:-ring, ring:-ring].reshape(-1)
 
 
 def _grown(nodes: Nodes, split: Bools) -> Nodes:
@@ -186,6 +202,7 @@ def _grown(nodes: Nodes, split: Bools) -> Nodes:
         np.concatenate([nodes.level, level]),
         np.concatenate([nodes.place, index]),
         child,
+        nodes.near.shape[1],
     )
 
 
@@ -214,10 +231,11 @@ def _split(nodes: Nodes, targets: Ints) -> Nodes:
     return nodes
 
 
-def _linked(shape: Ints, level: Ints, index: Ints, child: Ints) -> Nodes:
+def _linked(shape: Ints, level: Ints, index: Ints, child: Ints, around: int) -> Nodes:
+    """The tree, in which so many nodes around each are known."""
     from splinesdf.spaces.kernels.hierarchical import link
 
-    near = np.empty((len(level), 9), dtype=np.int64)
+    near = np.empty((len(level), around), dtype=np.int64)
     nodes = Nodes(shape, level, np.ascontiguousarray(index), child, near)
     link(nodes, _coarse_first(nodes), near)
     return nodes
@@ -253,8 +271,7 @@ def quadtree(nodes: Nodes, domain: Box) -> Quadtree:
 
 def _mesh_order(nodes: Nodes) -> tuple[Ints, Ints]:
     """The nodes in the domain, level after level, each with its children in order; the leaves."""
-    m, n = (int(count) for count in nodes.shape)
-    here = _inside((m, n))
+    here = _inside(nodes)
     levels = [here]
     while True:
         child = nodes.child[here]

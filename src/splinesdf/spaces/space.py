@@ -96,7 +96,7 @@ def first_space(name: str, element: Element, domain: Box, cells: tuple[int, int]
         raise InputError(f"expected space 'hierarchical', 'tensor' or 'uniform', got {name!r}")
     _check_spans(element, name)
     if name == "hierarchical":
-        return HierarchicalSpace.of_nodes(roots(cells), domain, element)
+        return HierarchicalSpace.of_nodes(roots(cells, element.beyond), domain, element)
     return TensorSpace(Grid.uniform(domain, *cells), element, whole=name == "uniform")
 
 

@@ -10,11 +10,11 @@ from splinesdf.ground.arrays import Floats, Ints
 class Nodes(NamedTuple):
     """A quadtree that grows, see `splinesdf.spaces.kernels.hierarchical`."""
 
-    shape: Ints  # (2,) roots each way in the domain; one more on each side around it
+    shape: Ints  # (2,) roots each way in the domain; one or two more on each side around it
     level: Ints  # (n,)
-    place: Ints  # (n, 2) the cell of its level, from -1 on
+    place: Ints  # (n, 2) the cell of its level; those before the domain are negative
     child: Ints  # (n,) first of four children, -1 for none
-    near: Ints  # (n, 9) the 3 x 3 nodes around, negative where there is none
+    near: Ints  # (n, 9 or 25) the nodes around, negative where there is none
 
 
 class Mask(NamedTuple):
@@ -45,4 +45,4 @@ class Block(NamedTuple):
 
     cells: Ints  # (n,)
     local: Floats  # (4, n) s, t, and the inverse sides of the cell
-    rows: Floats  # (n, 8) the coefficients, or none
+    rows: Floats  # (n, 8 or 15) the coefficients, or none

@@ -57,7 +57,8 @@ class TensorSpace:
     def places(self) -> Ints:
         """The cell (i, j) of each B-spline, the ring's from -1 on."""
         m, n = self.mesh.shape
-        index = np.meshgrid(np.arange(-1, m + 1), np.arange(-1, n + 1), indexing="ij")
+        beyond = self.element.beyond
+        index = np.meshgrid(np.arange(-1, m + beyond), np.arange(-1, n + beyond), indexing="ij")
         return np.stack(index, axis=-1).reshape(-1, 2)
 
     @cached_property
@@ -69,14 +70,23 @@ class TensorSpace:
     def cells(self) -> Ints:
         """The B-spline of each cell."""
         m, n = self.mesh.shape
-        return np.arange((m + 2) * (n + 2)).reshape(m + 2, n + 2)[1:-1, 1:-1].reshape(-1)
+        return np.arange(len(self.places)).reshape(self._counts)[1 : m + 1, 1 : n + 1].reshape(-1)
+
+    @property
+    def _counts(self) -> tuple[int, int]:
+        """B-splines each way."""
+        m, n = self.mesh.shape
+        return m + 1 + self.element.beyond, n + 1 + self.element.beyond
 
     @cached_property
     def _centers_and_sides(self) -> tuple[Floats, Floats]:
         lines = self.mesh.x, self.mesh.y
-        sides = [ghosted_sides(v) for v in lines]
-        lows = [np.concatenate([v[:1] - h[:1], v]) for v, h in zip(lines, sides, strict=True)]
-        middles = [low + 0.5 * h for low, h in zip(lows, sides, strict=True)]
+        sides = [ghosted_sides(v, self.element.beyond) for v in lines]
+        lows = [
+            np.concatenate([v[:1] - h[:1], v, v[-1] + np.cumsum(h[len(v) + 1 :])])
+            for v, h in zip(lines, sides, strict=True)
+        ]
+        middles = [low + self.element.center * h for low, h in zip(lows, sides, strict=True)]
         centers = np.stack(np.meshgrid(*middles, indexing="ij"), axis=-1).reshape(-1, 2)
         return centers, np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 2)
 
@@ -87,12 +97,12 @@ class TensorSpace:
 
     def numbers(self, coefficients: Floats) -> Floats:
         """The numbers of all cells from all coefficients."""
-        m, n = self.mesh.shape
-        table = coefficients.reshape(m + 2, n + 2)
+        table = coefficients.reshape(self._counts)
         if "tensor" in self.element.spaces:
             return tensor_ordinates(self.mesh, table)
-        blocks = np.lib.stride_tricks.sliding_window_view(table, (3, 3)).reshape(-1, 9)
-        return self.element.cell_numbers(blocks)
+        side = self.element.beyond + 2
+        blocks = np.lib.stride_tricks.sliding_window_view(table, (side, side))
+        return self.element.cell_numbers(blocks.reshape(-1, side * side))
 
     def refined(self, bad: Ints, quarters: Bools) -> TensorSpace:
         """All cells halved, or the rows and columns of bad ones."""
@@ -111,15 +121,19 @@ class TensorSpace:
             from splinesdf.spaces.kernels.polynomials import evaluate_polynomials
 
             return partial(evaluate_polynomials, x, y, table, self.element.degree)
+        if self.element.degree == 4:
+            from splinesdf.spaces.kernels.quartics import evaluate_quartic_grid
+
+            return partial(evaluate_quartic_grid, x, y, table)
         from splinesdf.spaces.kernels.evaluation import evaluate_grid  # Numba loads only when used
 
         return partial(evaluate_grid, x, y, table)
 
 
-def ghosted_sides(lines: Floats) -> Floats:
-    """Cell sides with one more at each end, equal to its neighbor: (m + 1,) -> (m + 2,)."""
+def ghosted_sides(lines: Floats, beyond: int = 1) -> Floats:
+    """Cell sides with one more before and so many beyond them, equal to their neighbors."""
     sides = np.diff(lines)
-    return np.concatenate([sides[:1], sides, sides[-1:]])
+    return np.concatenate([sides[:1], sides, np.repeat(sides[-1:], beyond)])
 
 
 def tensor_ordinates(mesh: Grid, coefficients: Floats) -> Floats:

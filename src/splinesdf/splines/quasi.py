@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from splinesdf.ground.arrays import Floats
+import numpy as np
+
+from splinesdf.ground.arrays import Floats, whole
 from splinesdf.meshes import Grid, Mesh
 from splinesdf.spaces.element import Element
 from splinesdf.spaces.quadratic import QUADRATIC
@@ -47,13 +49,23 @@ def quasi_interpolate(
     return SplineSDF(mesh, numbers, element=element)
 
 
-def bspline(mesh: Grid, i: int, j: int) -> SplineSDF:
+def bspline(mesh: Grid, i: int, j: int, element: Element = QUADRATIC) -> SplineSDF:
     """The B-spline of cell (i, j) of a grid, -1 and m, n being the ring around the domain.
 
-    It is positive inside an octagon in the 3 x 3 cells around (i, j); all of them sum to one.
+    The quadratic one is positive inside an octagon in the 3 x 3 cells around (i, j). That of the
+    quartic element, whose ring goes to m + 1, n + 1, has its center in the cell's lower left
+    corner, and is positive inside the 4 x 4 cells around that less half a cell in each corner. All
+    of an element's sum to one.
 
     References
     ----------
     [Wang2014] Theorem 5 and the 41 values after it.
     """
-    return SplineSDF(mesh, tensor_ordinates(mesh, bspline_coefficients(mesh, i, j)))
+    if "tensor" in element.spaces:
+        return SplineSDF(mesh, tensor_ordinates(mesh, bspline_coefficients(mesh, i, j)))
+    space = space_on(mesh, element)
+    last_i, last_j = (int(last) for last in space.places.max(axis=0))
+    i, j = whole(i, "i", least=-1, most=last_i), whole(j, "j", least=-1, most=last_j)
+    coefficients = np.zeros(len(space.places))
+    coefficients[np.all(space.places == (i, j), axis=1)] = 1.0
+    return SplineSDF(mesh, space.numbers(coefficients), element=element)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from splinesdf.contours.contour import Contour
-from splinesdf.contours.nesting import nested
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats, as_floats, as_points
 from splinesdf.ground.blocks import in_blocks
@@ -37,7 +35,7 @@ from splinesdf.splines.border import border_of, extend_lattice
 from splinesdf.splines.cell_arrays import to_arrays
 from splinesdf.splines.coefficients import coefficients
 from splinesdf.splines.finite_elements import to_skfem
-from splinesdf.splines.level_sets import contours
+from splinesdf.splines.levels import contours
 from splinesdf.splines.nodes import values_at_nodes
 from splinesdf.splines.provenance import Provenance
 from splinesdf.splines.shader import to_glsl
@@ -91,8 +89,8 @@ class SplineSDF:
     made : Provenance or None
         From what request it was made, and how well it answers it.
     element : Element
-        What its B-splines are, see ``splinesdf.spaces``: quadratic unless given. Others are
-        evaluated and saved; outside the domain and on level sets they are not answered for.
+        What its B-splines are, see ``splinesdf.spaces``: quadratic unless given. Cubic and quartic
+        splines are not drawn by shaders and pages, nor cut into quadratic triangles.
 
     Examples
     --------
@@ -186,7 +184,7 @@ class SplineSDF:
         box = self.domain if domain is None else check_domain(domain)
         x, y = grid_nodes(nx, ny, box)
         few = len(x) * len(y) < _NODES * len(self.ordinates)
-        if few or self.element.power_form is None:
+        if few or self.element.degree != 2:
             points = np.stack(np.meshgrid(x, y), axis=-1)
             return DistanceGrid(x, y, self(points, outside=outside))
         distance = values_at_nodes(self.mesh, self._frames, self._table, x, y)
@@ -262,20 +260,6 @@ class SplineSDF:
         """Whether the value is negative, shape (..., 2) -> (...,)."""
         return np.asarray(self(points, outside=outside) < 0.0)
 
-    def contours(self, level: float = 0.0) -> list[Contour]:
-        """The level set ``s = level`` as chains of conic arcs, lower values on their left.
-
-        Closed and with a continuous tangent, but for those that leave the domain (``closed`` is
-        False) and where the gradient vanishes. Left and right as x turns into y. Each has the
-        contour that directly encloses it as its ``parent``.
-        """
-        self._check_quadratic("another for level sets")
-        found = contours(self.mesh, self.ordinates, level, y_down=self.y_down)
-        if self.shape is not None:
-            unit, page = self.shape.unit, self.shape.page
-            found = [replace(contour, unit=unit, page=page) for contour in found]
-        return nested(found)
-
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the values in colors on axes, the current ones unless given, and return them."""
         axes: Axes = public("plot").drawn(self, ax)
@@ -291,10 +275,11 @@ class SplineSDF:
             "domain": f"{xmax - xmin:.6g} × {ymax - ymin:.6g}",
             "errors": "not known" if self.made is None else self.made.errors,
         }
-        zero = self.contours() if self.element.degree == 2 else []
+        zero = self.contours() if self.element.degree == 2 or self._bound else []
         picture = Picture([c.points() for c in zero], self.domain, "nonzero", self.y_down)
         return card(kind, self.name, figures, picture)
 
+    contours = contours
     coefficients = coefficients
     triangles = triangles
     to_arrays = to_arrays
@@ -330,14 +315,12 @@ class SplineSDF:
         write_archive(path, self._archive)
 
     @property
+    def _bound(self) -> float | None:
+        return None if self.made is None else self.made.bound
+
+    @property
     def _archive(self) -> Archive:
         return Archive(*(getattr(self, name) for name in Archive._fields))
-
-    def _check_quadratic(self, expected: str) -> None:
-        if self.element.degree != 2:
-            raise InputError(
-                f"expected a quadratic spline, or {expected}, got a {self.element.name} one"
-            )
 
     @cached_property
     def _frames(self) -> Floats:
@@ -353,8 +336,7 @@ class SplineSDF:
 
     @cached_property
     def _border(self) -> Border:
-        self._check_quadratic('outside="nan" of it')
-        return border_of(self.mesh, self.ordinates)
+        return border_of(self.mesh, self.element, self.ordinates)
 
     def _evaluate(
         self, array: Floats, order: int, outside: Outside

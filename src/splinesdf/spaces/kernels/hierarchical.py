@@ -1,8 +1,11 @@
 """A quadtree that grows, with a ring of cells around its domain, and its spline's coefficients.
 
 Nodes never change their number: what is known of one stays where it is. Children follow one
-another: (2i, 2j), (2i, 2j + 1), (2i + 1, 2j), (2i + 1, 2j + 1). A node of the ring is split with
-the nodes of the domain beside it, so that every function that reaches into a cell is a node.
+another: (2i, 2j), (2i, 2j + 1), (2i + 1, 2j), (2i + 1, 2j + 1). Nodes of the ring are split with
+the nodes of the domain near them, so that every function that reaches into a cell is a node.
+
+The ring is as wide as B-splines reach beyond their cell (`Element.beyond`), one node or two, and so
+is what is near a node: 3 x 3 nodes as below, or 5 x 5.
 
     neighbors of a node      2  5  8      ^ j
                              1  4  7      |
@@ -28,16 +31,18 @@ def link(nodes: Nodes, order: Ints, near: Ints) -> None:
     nodes : Nodes
     order : ndarray, shape (n,)
         The nodes, coarse ones first.
-    near : ndarray, shape (n, 9)
+    near : ndarray, shape (n, 9 or 25)
     """
     m, n = nodes.shape[0], nodes.shape[1]
-    for node in range((m + 2) * (n + 2)):
+    ring = _ring(nodes)
+    side, middle = 2 * ring + 1, near.shape[1] // 2
+    for node in range((m + 2 * ring) * (n + 2 * ring)):
         i, j = nodes.place[node, 0], nodes.place[node, 1]
-        for a in range(-1, 2):
-            for b in range(-1, 2):
-                there = -1 <= i + a <= m and -1 <= j + b <= n
-                other = (i + a + 1) * (n + 2) + j + b + 1
-                near[node, 4 + 3 * a + b] = other if there else _BEYOND
+        for a in range(-ring, ring + 1):
+            for b in range(-ring, ring + 1):
+                there = -ring <= i + a < m + ring and -ring <= j + b < n + ring
+                other = (i + a + ring) * (n + 2 * ring) + j + b + ring
+                near[node, middle + side * a + b] = other if there else _BEYOND
     for node in order:
         child = nodes.child[node]
         if child < 0:
@@ -45,30 +50,31 @@ def link(nodes: Nodes, order: Ints, near: Ints) -> None:
         limit_i = m << (nodes.level[node] + 1)
         limit_j = n << (nodes.level[node] + 1)
         for k in range(4):
-            for a in range(-1, 2):
-                for b in range(-1, 2):
+            for a in range(-ring, ring + 1):
+                for b in range(-ring, ring + 1):
                     i, j = (k >> 1) + a, (k & 1) + b
-                    other = near[node, 4 + 3 * (i >> 1) + (j >> 1)]
+                    other = near[node, middle + side * (i >> 1) + (j >> 1)]
                     if other >= 0 and nodes.child[other] >= 0:
                         found = nodes.child[other] + 2 * (i & 1) + (j & 1)
                     else:
                         x, y = nodes.place[child + k, 0] + a, nodes.place[child + k, 1] + b
                         inside = 0 <= x < limit_i and 0 <= y < limit_j
                         found = _COARSER if inside else _BEYOND
-                    near[child + k, 4 + 3 * a + b] = found
+                    near[child + k, middle + side * a + b] = found
 
 
 @kernel
 def owned(nodes: Nodes, own: Bools) -> None:
-    """Fill whether a node has a coefficient of its own: its 3 x 3 cells are all as fine."""
-    m, n = nodes.shape[0], nodes.shape[1]
+    """Fill whether a node has a coefficient of its own: all cells of its support are as fine."""
+    ring = _ring(nodes)
+    side, middle = 2 * ring + 1, nodes.near.shape[1] // 2
     for node in range(nodes.level.shape[0]):
-        level = nodes.level[node]
-        i, j = nodes.place[node, 0], nodes.place[node, 1]
-        own[node] = -1 <= i <= m << level and -1 <= j <= n << level
-        for k in range(9):
-            if nodes.near[node, k] == _COARSER:
-                own[node] = False
+        own[node] = _reaches(nodes, nodes.level[node], nodes.place[node, 0], nodes.place[node, 1])
+        # The support goes as far to the left as B-splines beyond a cell reach it.
+        for a in range(-ring, 2):
+            for b in range(-ring, 2):
+                if nodes.near[node, middle + side * a + b] == _COARSER:
+                    own[node] = False
 
 
 @kernel
@@ -93,11 +99,25 @@ def mark(nodes: Nodes, targets: Ints, split: Bools) -> bool:
             continue
         again = again or nodes.level[node] < level
         split[node] = True
-        for k in range(9):
+        for k in range(nodes.near.shape[1]):
             other = nodes.near[node, k]
             if other >= 0 and nodes.child[other] < 0 and _outside(nodes, other):
                 split[other] = True
     return again
+
+
+@uncounted
+def _ring(nodes: Nodes) -> int:
+    """How wide the ring is."""
+    return 1 if nodes.near.shape[1] == 9 else 2
+
+
+@uncounted
+def _reaches(nodes: Nodes, level: int, i: int, j: int) -> bool:
+    """Whether a B-spline reaches into the domain."""
+    beyond = _ring(nodes) - 1
+    in_x = -1 <= i <= (nodes.shape[0] << level) + beyond
+    return bool(in_x and -1 <= j <= (nodes.shape[1] << level) + beyond)
 
 
 @uncounted
@@ -109,7 +129,8 @@ def _outside(nodes: Nodes, node: int) -> bool:
 @uncounted
 def _ancestor(nodes: Nodes, level: int, i: int, j: int) -> int:
     """The node of a cell, or the finest one around it."""
-    node = ((i >> level) + 1) * (nodes.shape[1] + 2) + (j >> level) + 1
+    ring = _ring(nodes)
+    node = ((i >> level) + ring) * (nodes.shape[1] + 2 * ring) + (j >> level) + ring
     for k in range(level - 1, -1, -1):
         if nodes.child[node] < 0:
             break
@@ -122,13 +143,12 @@ def coefficients(
     nodes: Nodes, mask: Mask, order: Ints, own: Bools, values: Floats, result: Floats
 ) -> None:
     """Fill the coefficient of every node: its own value, or by subdivision of coarser ones."""
-    m, n = nodes.shape[0], nodes.shape[1]
     for node in order:
         if own[node]:
             result[node] = values[node]
             continue
         level, i, j = nodes.level[node], nodes.place[node, 0], nodes.place[node, 1]
-        if not (-1 <= i <= m << level and -1 <= j <= n << level):
+        if not _reaches(nodes, level, i, j):
             result[node] = 0.0  # in the ring, but no function of it reaches the domain
         else:
             result[node] = _subdivided(nodes, mask, result, level, i, j)
@@ -136,7 +156,7 @@ def coefficients(
 
 @kernel
 def blocks(nodes: Nodes, mask: Mask, cells: Ints, values: Floats, result: Floats) -> None:
-    """Fill the coefficients of the 3 x 3 cells around cells from those of all nodes.
+    """Fill the coefficients that reach into cells from those of all nodes.
 
     Parameters
     ----------
@@ -145,21 +165,24 @@ def blocks(nodes: Nodes, mask: Mask, cells: Ints, values: Floats, result: Floats
     cells : ndarray, shape (k,)
         Nodes in the domain that are not split.
     values : ndarray, shape (n,)
-    result : ndarray, shape (k, 9)
+    result : ndarray, shape (k, 9 or 16)
+        Of the cells from one before to one or two beyond, the upper ones running first.
     """
+    side = _ring(nodes) + 2
     for place in range(cells.shape[0]):
-        for k in range(9):
-            result[place, k] = _near(nodes, mask, values, cells[place], k)
+        for k in range(side * side):
+            a, b = k // side - 1, k % side - 1
+            result[place, k] = _near(nodes, mask, values, cells[place], a, b)
 
 
 @uncounted
-def _near(nodes: Nodes, mask: Mask, values: Floats, node: int, k: int) -> float:
-    """The coefficient of the k-th of the 3 x 3 cells around a node."""
-    other = nodes.near[node, k]
+def _near(nodes: Nodes, mask: Mask, values: Floats, node: int, a: int, b: int) -> float:
+    """The coefficient of the node that is (a, b) nodes further."""
+    other = nodes.near[node, nodes.near.shape[1] // 2 + (2 * _ring(nodes) + 1) * a + b]
     if other >= 0:
         return float(values[other])
     level, i, j = nodes.level[node], nodes.place[node, 0], nodes.place[node, 1]
-    return _subdivided(nodes, mask, values, level, i + k // 3 - 1, j + k % 3 - 1)
+    return _subdivided(nodes, mask, values, level, i + a, j + b)
 
 
 @uncounted
@@ -172,7 +195,7 @@ def _subdivided(nodes: Nodes, mask: Mask, values: Floats, level: int, i: int, j:
     parity = 2 * (i & 1) + (j & 1)
     for k in range(mask.weights.shape[1]):
         x, y = (i >> 1) + mask.steps[parity, k, 0], (j >> 1) + mask.steps[parity, k, 1]
-        if not (-1 <= x <= nodes.shape[0] << level and -1 <= y <= nodes.shape[1] << level):
+        if not _reaches(nodes, level, x, y):
             continue
         node = _ancestor(nodes, level, x, y)
         known = nodes.level[node] == level
