@@ -39,9 +39,15 @@ from splinesdf.splines.archive import SAVED
 @click.option(
     "--space", default="hierarchical", help="hierarchical, tensor or uniform.", show_default=True
 )
-@click.option("--operator", help="S, W, V or P.  [default: S; P for bands; W on a tensor grid]")
 @click.option(
-    "--element", default="quadratic", help="quadratic, or cubic (uniform).", show_default=True
+    "--operator",
+    help="S, W, V or P; quartic: O, C, D, V.  [default: S; P for bands; W on a tensor grid; O]",
+)
+@click.option(
+    "--element",
+    default="quadratic",
+    help="quadratic, quartic, or cubic (uniform).",
+    show_default=True,
 )
 @click.option("--no-proof", is_flag=True, help="Sample what a proof takes a closer look for.")
 @click.option("--domain", type=float, nargs=4, help="XMIN YMIN XMAX YMAX.")

@@ -191,13 +191,15 @@ def fit(
     Other Parameters
     ----------------
     space : {"hierarchical", "tensor", "uniform"}
-    element : {"quadratic", "cubic"}
-        The B-splines, see ``splinesdf.spaces``: C¹, of order 3 both. The cubic ones are for
-        comparison: they have uniform space only, and neither level sets nor values outside.
+    element : {"quadratic", "quartic", "cubic"}
+        The B-splines, see ``splinesdf.spaces``. Quartic ones are C², of order 4, and pay around
+        levels of smooth outlines at small tolerances, and for curvature; not on tensor grids.
+        Cubic ones, C¹ of order 3 as quadratic ones, are for comparison, in uniform space only.
     operator : str, optional
         The quasi-interpolant. Of the quadratic element S, W, V or P: unless given S, which needs
         the fewest cells at ridges of the distance; for bands P, which reproduces quadratics across
         levels and needs the fewest around smooth levels; W on a tensor grid, which has neither.
+        Of the quartic one O (unless given), C, D or V; of the cubic one S or V.
     band : pair of float, or several, optional
         Keep the tolerance only where lo <= u <= hi or lo <= s <= hi; elsewhere the spline may
         be anything that does not take values of the band.

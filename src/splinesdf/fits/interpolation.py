@@ -55,11 +55,11 @@ def interpolate(
         shapes (m + 1,) and (n + 1,).
     operator : str, optional
         The quasi-interpolant. Of the quadratic element W (unless given), V, S or P, of the cubic
-        one S or V. S and P need equal cells. None of them has the distance's values at points, as
-        an interpolant in the strict sense would.
+        one S or V, of the quartic one O, C, D or V. S and P need equal cells. None of them has
+        the distance's values at points, as an interpolant in the strict sense would.
     domain : (xmin, ymin, xmax, ymax), optional
         For (m, n); knots are a domain. As in `fit` unless given.
-    element : {"quadratic", "cubic"}
+    element : {"quadratic", "quartic", "cubic"}
         As in `fit`.
 
     Returns

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from splinesdf.contours.contour import Contour
 from splinesdf.contours.nesting import nested
+from splinesdf.ground.arrays import positive
 from splinesdf.splines import level_sets
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def contours(
         rounding, or a million cells do not do for it.
     """
     mesh, ordinates = spline.mesh, spline.ordinates
+    tolerance = None if tolerance is None else positive(tolerance, "tolerance")
     if spline.element.degree != 2:
         allowed = level_sets.allowed_beside(spline.element, spline._bound, tolerance)
         mesh, ordinates = level_sets.followed(mesh, spline.element, ordinates, level, allowed)

@@ -103,8 +103,8 @@ def to_glsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float
     Raises
     ------
     InputError
-        If the spline is cubic, GLSL does not take the name, a texture of 2048 x 2048 does not hold
-        the numbers, or the domain is so far from the origin that float32 does not tell places in
+        If the spline is not quadratic, GLSL does not take the name, a texture of 2048 x 2048 does
+        not hold the numbers, or the domain is so far from the origin that float32 does not tell places in
         it apart.
 
     Examples

@@ -1,4 +1,4 @@
-"""`SplineSDF`: a C¹ piecewise-quadratic function on a mesh, and what one asks of a distance."""
+"""`SplineSDF`: a C¹ piecewise polynomial function on a mesh, and what one asks of a distance."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ Outside = Literal["extend", "nan"]
 @without_caches
 @dataclass(frozen=True, eq=False)
 class SplineSDF:
-    """A C¹ quadratic spline on a criss-cross mesh, read as a signed distance.
+    """A C¹ spline, quadratic unless said otherwise, read as a signed distance.
 
     What is asked outside its domain is answered by the extension
 
@@ -79,7 +79,8 @@ class SplineSDF:
     ----------
     mesh : Grid or Quadtree
     ordinates : ndarray, shape (n_cells, numbers)
-        The Bernstein-Bézier ordinates that determine each cell: eight of the quadratic element.
+        What determines each cell: eight Bernstein-Bézier ordinates of the quadratic element, the
+        fifteen numbers of its power form of the quartic one.
     name : str
     y_down : bool
         As in `Shape`: only pictures and writers look at this. If there is a shape, both are its
@@ -206,7 +207,7 @@ class SplineSDF:
         return value.reshape(array.shape[:-1]), gradient.reshape(array.shape)
 
     def hessian(self, points: ArrayLike, *, outside: Outside = "extend") -> Floats:
-        """Second derivatives, shape (..., 2) -> (..., 2, 2): constant on each triangle."""
+        """Second derivatives, shape (..., 2) -> (..., 2, 2); of quadratics they jump."""
         array = as_points(points)
         return self._evaluate(array, 2, outside)[2][:, [0, 1, 1, 2]].reshape(*array.shape, 2)
 
@@ -229,6 +230,7 @@ class SplineSDF:
         Shape (..., 2) -> (...,). Second derivatives of a quadratic spline jump from triangle to
         triangle: away from the medial axis the error is of the order of the cell's side h, where
         the value's is h³ and the gradient's h². A fit to a tolerance has h ~ tolerance^(1/3).
+        (Of a quartic spline they go on: h², h⁴ and h³, and h ~ tolerance^(1/4).)
 
         The shape knows better: with ``found = splinesdf.project(shape, points)`` the level set's
         curvature is ``k / (1 + k * found.distance)``, ``k = found.curvature``, to rounding.

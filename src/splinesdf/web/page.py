@@ -75,8 +75,8 @@ def write_page(
     Raises
     ------
     InputError
-        If the spline is cubic or has more than two million cells, a distance cannot be used, or
-        the file cannot be written.
+        If the spline is not quadratic or has more than two million cells, a distance cannot be
+        used, or the file cannot be written.
 
     Examples
     --------

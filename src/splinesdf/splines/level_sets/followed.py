@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf.errors import InputError
-from splinesdf.ground.arrays import Bools, Floats, Ints, finite, positive
+from splinesdf.ground.arrays import Bools, Floats, Ints, finite
 from splinesdf.meshes import Grid, Mesh, Quadtree
 from splinesdf.spaces.element import CORNERS, Element, bernstein, monomials
 from splinesdf.spaces.hierarchical import HierarchicalSpace
@@ -48,7 +48,7 @@ class _Here(NamedTuple):
 def allowed_beside(element: Element, bound: float | None, tolerance: float | None) -> float:
     """How far from a level a spline may be on its contours: asked, or a share of its bound."""
     if tolerance is not None:
-        return positive(tolerance, "tolerance")
+        return tolerance
     if not bound:
         raise InputError(
             f"expected a tolerance of contours for a {element.name} spline without a bound of its "
