@@ -75,7 +75,7 @@ KINDS: dict[str, str] = {
             *("spline_or_mesh", "figure", "curve", "source", "characters"),
             *("progress", "holes", "other", "options", "factor"),
             *("sources", "job", "output", "reading", "writing", "scheduler", "overwrite"),
-            "chunks",
+            *("chunks", "dtype", "device"),
         ),
         "other",
     ),
