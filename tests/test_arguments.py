@@ -92,7 +92,7 @@ KINDS: dict[str, str] = {
             *("progress", "holes", "other", "options", "factor", "machine", "laser_mode"),
             *("side", "corners"),
             *("sources", "job", "output", "reading", "writing", "scheduler", "overwrite"),
-            "chunks",
+            *("chunks", "dtype", "device"),
         ),
         "other",
     ),

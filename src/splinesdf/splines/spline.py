@@ -34,6 +34,7 @@ from splinesdf.splines.archive import (
 from splinesdf.splines.border import border_of, extend_lattice
 from splinesdf.splines.cell_arrays import to_arrays
 from splinesdf.splines.coefficients import coefficients
+from splinesdf.splines.differentiable import to_jax, to_torch
 from splinesdf.splines.finite_elements import to_skfem
 from splinesdf.splines.levels import contours
 from splinesdf.splines.nodes import values_at_nodes
@@ -288,6 +289,8 @@ class SplineSDF:
     to_skfem = to_skfem
     to_glsl = to_glsl
     to_wgsl = to_wgsl
+    to_jax = to_jax
+    to_torch = to_torch
 
     def to_dict(self) -> dict[str, Any]:
         """All that a saved file holds, as texts, numbers, lists and dicts, for JSON.
