@@ -104,8 +104,8 @@ def to_glsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float
     ------
     InputError
         If the spline is not quadratic, GLSL does not take the name, a texture of 2048 x 2048 does
-        not hold the numbers, or the domain is so far from the origin that float32 does not tell places in
-        it apart.
+        not hold the numbers, or the domain is so far from the origin that float32 does not tell
+        places in it apart.
 
     Examples
     --------
