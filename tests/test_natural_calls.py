@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.ground import card
 
 CORNERS = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]
 
@@ -177,16 +178,32 @@ def test_cards_are_markup_that_shows_names_as_text(name: str) -> None:
     named = replace(shape(), name=name)
     spline = replace(result().spline, shape=named, name=name)
     for one in (named, spline, ss.FitResult(spline, result().history)):
-        card = one._repr_html_()
-        tree = ElementTree.fromstring(card)
+        text = one._repr_html_()
+        tree = ElementTree.fromstring(text)
         assert name in "".join(tree.itertext())
-        assert html.escape(name) in card
-        assert len(card) < 3000
+        assert html.escape(name) in text
+        assert len(text) < 3000
         (path,) = tree.iter("path")
         assert path.get("d", "").count("M") == 1
     assert "0.1" in ElementTree.fromstring(shape().offset(0.1)[0]._repr_html_()).find(
         "div/table"
     ).findtext("tr/td[2]")
+
+
+@pytest.mark.parametrize("point", [False, True])
+def test_a_card_of_what_cannot_be_drawn_has_its_figures(
+    point: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A contour that is a point, and one of more points than a page takes."""
+    if point:
+        contour = ss.Contour(np.full((2, 3, 2), 5.0), np.ones(2))
+    else:
+        (contour,) = shape().offset(0.1)
+        assert "<svg" in contour._repr_html_()
+        monkeypatch.setattr(card, "_MOST_POINTS", 7)
+    tree = ElementTree.fromstring(contour._repr_html_())
+    assert tree.find("svg") is None
+    assert tree.findtext("div/table/tr[2]/td[2]") == f"{len(contour.arcs)} (closed)"
 
 
 def test_a_card_shows_the_shape_upright_and_whole() -> None:

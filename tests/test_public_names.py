@@ -37,6 +37,12 @@ def test_every_name_is_where_type_checkers_are_told() -> None:
         ss.offsett  # type: ignore[attr-defined]  # noqa: B018
 
 
+def test_drawing_is_loaded_when_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(ss, "plot", raising=False)
+    assert ss.plot is sys.modules["splinesdf.plot"]
+    assert callable(ss.plot.plot_mesh)
+
+
 def in_a_new_process(program: str) -> object:
     done = subprocess.run(
         [sys.executable, "-c", f"import json, sys\n{program}"],

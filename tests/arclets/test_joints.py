@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.arclets.joints import joints
 from splinesdf.arclets.tangents import EndTangents, led_on
 from splinesdf.arclets.vertices import vertices
 
@@ -67,3 +68,24 @@ def test_a_vertex_that_rounding_took_a_branch_from_is_none() -> None:
     end = boundary.end.copy()
     end[found.ends[0]] += 1e-9
     assert len(vertices(boundary._replace(end=end)).ends) == 0
+
+
+@pytest.mark.parametrize("outside", [False, True])
+def test_each_arclet_has_one_follower_where_rounding_moved_branches_off_a_vertex(
+    outside: bool,
+) -> None:
+    """Of four triangles that share a corner; the others take each other's followers there."""
+    fans = "M0 0L4 -1L4 1Z M0 0L1 4L-1 4Z M0 0L-4 1L-4 -1Z M0 0L-1 -4L1 -4Z"
+    boundary = ss.Shape.from_svg_path(fans).boundary
+    (arriving,) = np.flatnonzero((boundary.start == (-1.0, 4.0)).all(axis=1))
+    (leaving,) = np.flatnonzero((boundary.end == (-4.0, 1.0)).all(axis=1))
+    start, end = boundary.start.copy(), boundary.end.copy()
+    end[arriving, 0] -= 1e-15
+    start[leaving, 0] -= 2e-15
+    moved = boundary._replace(start=start, end=end)
+    found = vertices(moved)
+    assert len(found.ends) == 3
+    made = joints(moved, found, outside=outside)
+    assert sorted(made.order) == sorted(made.following) == list(range(12))
+    assert np.abs(start[made.following] - end).max() <= 2e-15
+    assert made.following[arriving] == leaving

@@ -6,6 +6,7 @@ import dataclasses
 import io
 import itertools
 import json
+import os
 import re
 import subprocess
 import sys
@@ -65,6 +66,13 @@ def test_a_fit_that_is_deleted_meanwhile_is_described(
     done = run("info", "fit.npz")
     assert done.status == 0, done.err
     assert re.search(r"size\s+no longer there", done.out)
+
+
+def test_a_name_that_no_system_takes_is_refused_in_a_line(run: Command) -> None:
+    """Of a .json file it is first asked whether it is a fit, which cannot be told either."""
+    done = run("info", "a" * 300 + ".json")
+    assert (done.status, done.out) == (2, "")
+    assert re.fullmatch(r"splinesdf: a+\.\.\.: .*(too long|does not exist).*\n", done.err)
 
 
 def test_a_fit_of_unknown_origin_is_described(run: Command, tmp_path: Path) -> None:
@@ -132,6 +140,20 @@ def test_what_ends_a_command_is_said_in_a_line(
     done = run("offset", "gamma1", "-d", "0.1", "--tolerance", "0.01", "-o", "a.svg")
     assert (done.status, done.out, done.err.lstrip("\n")) == (status, "", says)
     assert not Path("a.svg").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signs of a closed pipe")
+@pytest.mark.parametrize(
+    "arguments", [("--version",), ("info", "part"), ("offset", "part", "-qd-2", "-o", "wkt:-")]
+)
+def test_a_reader_that_has_enough_ends_a_command_without_a_word(arguments: tuple[str, ...]) -> None:
+    """As ``| head``: click ends with the status 1, and nothing is flushed into the closed pipe."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "splinesdf", *arguments]
+    with os.fdopen(writer, "wb") as closed:
+        done = subprocess.run(command, stdout=closed, stderr=subprocess.PIPE, check=False)
+    assert (done.returncode, done.stderr) == (1, b"")
 
 
 def test_streams_that_are_no_files_take_what_is_said(

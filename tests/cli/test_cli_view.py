@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import signal
 import subprocess
@@ -85,6 +86,9 @@ def test_view_opens_the_page_unless_told_not_to(
         assert "Ctrl+C ends it." in done.err
         assert done.err.endswith("ended\n")
     assert opened == ["http://here/"]
+    done = run("view", "gamma1", "--tolerance", "0.1", "--no-open", "--json")
+    assert json.loads(done.out) == {"address": "http://here/"}
+    assert "Ctrl+C" not in done.err
 
 
 def test_view_says_that_many_cells_take_long(run: Command, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import splinesdf as ss
-from splinesdf.contours.nesting import nested, smallest_around
+from splinesdf.contours.nesting import _places, enclosed, nested, smallest_around
 
 
 def circle(x: float, y: float, radius: float, turn: float) -> ss.Contour:
@@ -49,3 +49,20 @@ def test_disks_that_touch_are_two_polygons_in_files(tmp_path: Path) -> None:
     for name in ("a.geojson", "a.wkt"):
         ss.write(tmp_path / name, both.offset(0.0))
         assert ss.read(tmp_path / name).area == pytest.approx(2.0 * math.pi, rel=1e-5)
+
+
+@pytest.mark.parametrize("place", [0, 2])
+@pytest.mark.parametrize("inner", [False, True])
+def test_where_one_of_the_places_that_are_asked_touches_the_other_two_decide(
+    inner: bool, place: int
+) -> None:
+    """There rounding says in or out: of 33 turns, some this and some that."""
+    big, said = circle(0.0, 0.0, 1.0, 0.0), set()
+    for degrees in range(0, 360, 11):
+        # Half as far as where the two touch.
+        x, y = _places(circle(0.0, 0.0, 0.5, degrees))[place]
+        small = circle(*((x, y) if inner else (-3.0 * x, -3.0 * y)), 0.5, degrees)
+        said.add(bool(enclosed(big, _places(small)[place, None])[0]))
+        assert nested([small, big])[0].parent is (big if inner else None), degrees
+        assert smallest_around([small, big])[0] == (1 if inner else -1), degrees
+    assert said == {False, True}

@@ -64,6 +64,13 @@ def ask(package: Path, **settings: str) -> subprocess.CompletedProcess[str]:
                           capture_output=True, text=True, check=False)  # fmt: skip
 
 
+def run_in(package: Path, program: str) -> str:
+    """What a program in a process of its own prints."""
+    done = subprocess.run([sys.executable, "-c", program], env=_environment(package, {}),
+                          capture_output=True, text=True, check=True)  # fmt: skip
+    return done.stdout
+
+
 def _environment(package: Path, settings: dict[str, str]) -> dict[str, str]:
     kept = {name: value for name, value in os.environ.items() if "NUMBA" not in name}
     return kept | {"PYTHONPATH": str(package)} | settings
@@ -93,6 +100,20 @@ def test_a_helper_is_linked_into_what_calls_it(package: Path) -> None:
     assert ask(package).stdout == "13.0 1 1\n"
     edit(called, "x + 1.0", "x + 5.0")
     assert ask(package).stdout == "17.0 0 1\n"
+
+
+def test_loaded_code_is_linked_into_all_that_call_it(package: Path) -> None:
+    """Two that are compiled, by one process, after what they call was kept."""
+    probe = package / "splinesdf/probe"
+    (probe / "second.py").write_text(CALLER.replace("SHIFT + 1.0 / (x - x)", "2.0 * SHIFT"))
+    program = "from splinesdf.probe.called import called; print(called(2.0))"
+    assert run_in(package, program) == "3.0\n"
+    program = """
+from splinesdf.probe.called import called
+from splinesdf.probe import caller, second
+print(caller.caller(2.0), second.caller(2.0), called.stats.cache_hits.total())
+"""
+    assert run_in(package, program) == "13.0 23.0 1\n"
 
 
 def test_an_edit_of_a_constant_elsewhere_is_seen(package: Path) -> None:

@@ -15,7 +15,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.cli.main import main
 from splinesdf.io.enclosed import check_sides, flattened, winding_number
-from splinesdf.io.remeasured import measure_file
+from splinesdf.io.remeasured import curves_in, measure_file
 from tests import oracles
 from tests.chains import circle
 from tests.mechanical import parts
@@ -235,3 +235,16 @@ def test_a_file_without_a_curve_cannot_be_checked(tmp_path: Path) -> None:
     (tmp_path / "a.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     with pytest.raises(ss.InputError, match=r"a\.svg: expected at least one curve, found none"):
         measure_file(tmp_path / "a.svg", square, [-1.0], tolerance=1e-3)
+
+
+@pytest.mark.parametrize(("turn", "way"), [("G2", -1.0), ("G3", 1.0)])
+def test_an_arc_from_a_point_to_itself_is_checked_as_machines_run_it(
+    tmp_path: Path, turn: str, way: float
+) -> None:
+    """`write` has none: a full circle is two arcs, and one of no length is left out."""
+    (tmp_path / "a.nc").write_text(f"G21\nG0 X5 Y1\nG1 Z-1\n{turn} X5 Y1 I-3 J0\nG0 Z5\n")
+    (curve,) = curves_in(tmp_path / "a.nc")
+    u = np.linspace(0.0, 1.0, 41)
+    angle = way * 2.0 * math.pi * u
+    around = np.stack([2.0 + 3.0 * np.cos(angle), 1.0 + 3.0 * np.sin(angle)], axis=1)
+    np.testing.assert_allclose(curve.at(curve.count * u), around, atol=1e-12)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -173,3 +174,21 @@ def test_blocks_inserted_nowhere_are_named(
     nowhere = bool(block or insert)
     assert_allclose(np.abs(areas(shape)).max(), (1 if nowhere else 25) * math.pi)
     assert any("INSERT" in one or "CIRCLE" in one for one in shape.notes) == nowhere
+
+
+def test_entities_that_draw_others_are_those_wherever_they_are_inserted(tmp_path: Path) -> None:
+    """A double line around 10 x 8, one of them on it, is a frame; a dimension is arrows."""
+    document = ezdxf.new(units=4, setup=True)
+    block = document.blocks.new("frame")
+    block.add_mline([(0, 0), (10, 0), (10, 8), (0, 8)], close=True)
+    space = document.modelspace()
+    space.add_blockref("frame", (100, 0), dxfattribs={"xscale": 2.0})
+    space.add_linear_dim(base=(100, 20), p1=(100, 8), p2=(120, 8)).render()
+    shape = read(document, tmp_path)
+    outer, inner = shapely.box(98, -1, 122, 9), shapely.box(100, 0, 120, 8)
+    assert sorted(areas(shape)) == pytest.approx([inner.area, outer.area])
+    assert shape.area == pytest.approx(outer.area - inner.area)
+    assert shape.box == pytest.approx(outer.bounds)
+    # The dimension is named by what it draws: its text and arrows; its lines are open.
+    assert any("1 MTEXT" in note for note in shape.notes)
+    assert any(re.search("left out: [0-9]+ open outlines", note) for note in shape.notes)

@@ -204,16 +204,27 @@ def test_cubics_and_points_that_are_there_twice(tmp_path: Path) -> None:
     pen.curveTo((-1000, -k), (-k, -1000), (0, -1000))
     pen.curveTo((k, -1000), (1000, -k), (1000, 0))
     pen.closePath()
-    nothing = T2CharStringPen(1000, None)
+    nothing, point = T2CharStringPen(1000, None), T2CharStringPen(1000, None)
+    point.moveTo((500, 500))
+    point.lineTo((500, 500))
+    point.closePath()
     builder = FontBuilder(1000, isTTF=False)
-    builder.setupGlyphOrder([".notdef", "A"])
-    builder.setupCharacterMap({65: "A"})
-    strings = {".notdef": nothing.getCharString(), "A": pen.getCharString()}
+    builder.setupGlyphOrder([".notdef", "A", "B"])
+    builder.setupCharacterMap({65: "A", 66: "B"})
+    # As drawn: optimized, the lines would be gone.
+    strings = {
+        name: pen.getCharString(optimize=False)
+        for name, pen in ((".notdef", nothing), ("A", pen), ("B", point))
+    }
     builder.setupCFF("Test", {}, strings, {})
-    builder.setupHorizontalMetrics(dict.fromkeys((".notdef", "A"), (1000, 0)))
+    builder.setupHorizontalMetrics(dict.fromkeys(strings, (1000, 0)))
     builder.setupHorizontalHeader(ascent=900, descent=-100)
     builder.setupPost()
     builder.save(tmp_path / "a.otf")
+    with pytest.raises(ss.InputError, match="something to see"):
+        ss.read(tmp_path / "a.otf", text="B")
+    _, seen_not = ss.atlas(tmp_path / "a.otf", characters="AB").glyphs
+    assert (seen_not.name, seen_not.cell) == ("B", None)
     shape = ss.read(tmp_path / "a.otf", text="A")
     assert shape.piece_count == 4
     around = np.linspace(0.0, 2.0 * np.pi, 99)

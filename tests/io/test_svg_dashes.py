@@ -182,6 +182,8 @@ ERRORS = {
     "stroke-dasharray='5 apples'": ("stroked without dashes, as they have an error", 80.0),
     "stroke-dasharray='10' stroke-dashoffset='x'": ("dashed from the start, as it has", 40.0),
     "stroke-dasharray='10' pathLength='-2'": ("dashed by its real length, as it has", 40.0),
+    "stroke-dasharray='10' pathLength='8 8'": ("dashed by its real length, as it has", 40.0),
+    "stroke-dasharray='10' pathLength='long'": ("dashed by its real length, as it has", 40.0),
 }
 
 

@@ -108,3 +108,27 @@ def test_dxf_says_a_unit_that_is_one_but_for_printed_digits(mm: float, tmp_path:
     ss.write(tmp_path / "a.dxf", contours)
     assert ss.read(tmp_path / "a.dxf").unit == pytest.approx(round(mm, 1), rel=1e-15)
     measure_file(tmp_path / "a.dxf", shape, [0.0], 1e-3, Told(), contours)  # which asks for a unit
+
+
+@pytest.mark.parametrize(("name", "said"), [("a.dxf", "$INSUNITS\n 70\n4"), ("a.nc", "G21 ")])
+def test_a_file_that_lost_its_unit_is_not_measured(
+    part: ss.Shape, tmp_path: Path, name: str, said: str
+) -> None:
+    """By a unit that is guessed, a part of the wrong size could pass."""
+    assert part.unit is not None
+    distance = -2.0 / part.unit
+    ss.write(tmp_path / name, ss.offset(part, distance, tolerance=1e-3))
+    text = (tmp_path / name).read_text()
+    assert text.count(said) == 1
+    (tmp_path / name).write_text(text.replace(said, said.replace("4", "0").replace("G21 ", "")))
+    with pytest.raises(ss.InputError, match=f"{name}: expected a file that declares its unit"):
+        measure_file(tmp_path / name, part, [distance], 1e-3)
+
+
+def test_a_corner_as_origin_is_that_of_what_was_written(part: ss.Shape, tmp_path: Path) -> None:
+    contours = ss.offset(part, -2.0, tolerance=1e-3)
+    ss.write(tmp_path / "a.svg", contours, origin="lower-left")
+    told = Told(origin="lower-left")
+    assert measure_file(tmp_path / "a.svg", part, [-2.0], 1e-3, told, contours).keeps(1.01e-3)
+    with pytest.raises(ss.InputError, match="expected the contours that were written"):
+        measure_file(tmp_path / "a.svg", part, [-2.0], 1e-3, told)

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from splinesdf.contours.contour import Contour, evaluate, mirrored
 from splinesdf.errors import MissingExtraError
 from splinesdf.io.output import write
+from splinesdf.io.remeasured import curves_in
 from tests.chains import (
     circle,
     circular,
@@ -100,6 +101,12 @@ def test_dxf_of_a_single_open_arc_or_line(tmp_path: Path, way: float) -> None:
     for found, expected in ((arc.dxf.start_angle, low), (arc.dxf.end_angle, high)):
         assert (found - expected + 180.0) % 360.0 == pytest.approx(180.0, abs=1e-12)
     assert (straight.dxf.start.x, straight.dxf.end.y) == (0.0, 3.0)
+    # And as `splinesdf offset --check` reads it: counterclockwise, whichever way it was written.
+    read, _ = curves_in(tmp_path / "a.dxf")
+    u = np.linspace(0.0, 1.0, 41)
+    angle = 0.3 + 4.0 * (u if way > 0.0 else u - 1.0)
+    around = 2.0 * np.stack([np.cos(angle), np.sin(angle)], axis=1) + 1.0
+    assert_allclose(read.at(read.count * u), around, atol=1e-12)
 
 
 @pytest.mark.parametrize("tolerance", [1.0, 1e-2, 1e-5])

@@ -16,6 +16,7 @@ from numpy.testing import assert_allclose
 import splinesdf as ss
 from splinesdf.contours.contour import Contour, mirrored
 from splinesdf.io.output import write
+from splinesdf.io.writers import svg
 from splinesdf.io.writers.svg import path_data
 from tests.chains import (
     circle,
@@ -73,6 +74,16 @@ def test_svg_cubics_use_the_tolerance() -> None:
     assert counts == sorted(counts)
     assert counts[0] <= 2
     assert counts[-1] <= 64
+
+
+def test_cubics_that_are_not_near_enough_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    hyperbola = Contour(
+        np.array([[[0.0, 0.0], [50.0, 80.0], [100.0, 0.0]]]), np.array([3.0]), closed=False
+    )
+    monkeypatch.setattr(svg, "_MOST_HALVINGS", 3)
+    assert re.fullmatch("MC{4}", commands(path_data(hyperbola, 1e-2)))
+    with pytest.raises(ss.InputError, match=r"cubics follow to 1e-08, got one .* raise the tol"):
+        path_data(hyperbola, 1e-8)
 
 
 @given(
@@ -157,6 +168,17 @@ def test_an_arc_whose_center_is_far_away_is_a_cubic(radius: float) -> None:
     x, y = np.concatenate(read_path(d)).T
     assert np.abs(x + y * y / (radius + np.hypot(radius + x, y))).max() <= 4e-16 * radius
     assert y.max() == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(("weight", "x", "y"), [(0.5, -1.0, 1e-8), (0.5, 2.0, -1e-8)])
+def test_an_ellipse_that_a_reader_misses_is_a_cubic(weight: float, x: float, y: float) -> None:
+    """It is thin: read from A, it was off by 1.8e-8."""
+    contour = Contour(
+        np.array([[[0.0, 0.0], [x, y], [1.0, 0.0]]]), np.array([weight]), closed=False
+    )
+    d = path_data(contour, 1e-9)
+    assert re.fullmatch("MC+", commands(d))
+    assert distance_to_chain(np.concatenate(read_path(d)), contour).max() <= 2e-9
 
 
 def test_a_contour_that_is_a_point_draws_nothing(tmp_path: Path) -> None:

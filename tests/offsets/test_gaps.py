@@ -10,9 +10,10 @@ import pytest
 import splinesdf as ss
 from splinesdf.arclets.kernels import arclet, nearest
 from splinesdf.arclets.kernels.nearest import room_to_search
+from splinesdf.offsets import trimmed as trimmed_module
 from splinesdf.offsets.kernels import clearance, gather
 from splinesdf.offsets.kernels import parallels as _parallels
-from splinesdf.offsets.trimmed import parallels, parallels_at, walls_at
+from splinesdf.offsets.trimmed import parallels, parallels_at, trimmed, walls_at
 from tests.compiled import from_python
 from tests.glyphs import glyphs
 from tests.mechanical import parts
@@ -232,3 +233,16 @@ def test_secants_find_where_a_gap_is_zero_with_few_looks(
     assert t == pytest.approx(root, abs=1e-15)
     # Halvings alone take about fifty.
     assert len(looked) < 30
+
+
+@pytest.mark.parametrize("room", [0, 1, 7])
+@pytest.mark.parametrize("distance", [-2.0, 2.0])
+def test_segments_that_have_no_room_are_looked_for_again(
+    room: int, distance: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And are those that are found at once where there is room."""
+    part = ss.example("part")
+    expected = trimmed(part, distance, 1e-3)
+    monkeypatch.setattr(trimmed_module, "_ROOM", room - 2 * len(part.joints.order))
+    for one, other in zip(trimmed(part, distance, 1e-3), expected, strict=True):
+        assert np.array_equal(one, other)

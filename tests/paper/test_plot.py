@@ -301,6 +301,14 @@ def test_overview_calls_no_error_a_bound_that_is_none() -> None:
     assert right.get_title() == f"signed distance, error {plot.at_most(result.error)}, not proved"
 
 
+def test_overview_names_the_bands_that_the_bound_holds_in() -> None:
+    shape = framed("evenodd")
+    result = ss.fit(shape, tolerance=0.1, band=[(-0.2, 0.1), (0.5, 0.5)])
+    _left, right = plot.overview(result, shape, []).axes
+    bound = plot.at_most(result.bound)
+    assert right.get_title() == f"signed distance, error ≤ {bound} for −0.2 to 0.1, 0.5"
+
+
 def png_size(path: Path) -> tuple[int, int]:
     head = path.read_bytes()[:24]
     assert head[:8] == b"\x89PNG\r\n\x1a\n"

@@ -10,6 +10,7 @@ import splinesdf as ss
 from splinesdf.arclets.crossings import find_crossings
 from splinesdf.arclets.points import points_at, tangents_at
 from splinesdf.arclets.tables import Arclets
+from splinesdf.shapes.boundary import _closed
 from splinesdf.shapes.sources.compiled import polygon
 from tests.glyphs import glyphs
 from tests.named_shapes import gamma
@@ -322,3 +323,26 @@ def test_a_side_next_to_nothing_costs_no_contour(chamfer: float, first: int) -> 
     found = ss.signed_distance(shape, [(0.0, 0.0), (2.0, 0.0), (0.5, -0.75)])
     assert found == pytest.approx([-1.0, 1.0, -0.25], abs=1e-12)
     assert [len(c.arcs) > 3 for c in ss.offset(shape, 0.3)] == [True]
+
+
+def opened(by: float) -> Arclets:
+    """The sides of a square 100 long at (1000, 0), one cut short in the corner (1100, 100)."""
+    corners = square(1000.0, 0.0, 100.0)
+    boundary = polygons(corners).boundary
+    (row,) = np.flatnonzero((boundary.end + boundary.origin == corners[2]).all(axis=1))
+    following, end = boundary.following.copy(), boundary.end.copy()
+    following[row] = -1
+    end[row, 1] -= by
+    return boundary._replace(following=following, end=end, arcs=boundary.arcs.copy())
+
+
+def test_what_rounding_leaves_open_is_closed_to_the_bit() -> None:
+    made = _closed(opened(0.9e-5))
+    assert sorted(made.following) == [0, 1, 2, 3]
+    assert np.array_equal(made.end, made.start[made.following])
+    assert np.array_equal(made.arcs[:, 1:3], made.end)
+
+
+def test_a_boundary_that_is_open_farther_is_refused_not_closed_by_a_step() -> None:
+    with pytest.raises(ss.InputError, match=r"leaves open near \(1100, 99\.99\d+\): move them"):
+        _closed(opened(1.1e-5))

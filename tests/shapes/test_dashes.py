@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import splinesdf as ss
 from splinesdf.errors import InputError
+from splinesdf.shapes.sources import dashes as dashes_module
 from splinesdf.shapes.sources.dashes import Dashed, Pattern, dashed, path_length
 from splinesdf.shapes.sources.stroke import Pen, stroke_region
 from splinesdf.shapes.sources.svg_path import parse_until
@@ -262,6 +263,54 @@ def test_a_crumb_does_not_turn_its_cap() -> None:
     start = loop[0][1] - loop[0][0]
     assert math.atan2(-start[0], start[1]) == pytest.approx(angle, abs=1e-9)
     assert path_length([loop]) == pytest.approx(4.0, rel=1e-12)
+
+
+def test_a_crumb_at_the_end_does_not_turn_its_cap() -> None:
+    """A dash ends 1e-9 behind where two smooth pieces meet, on the first of them, continued."""
+    angle = math.radians(27.0)
+    (loop,) = cut(CIRCLE, 4, 60, offset=4.0 - 1e-9 - 10.0 * angle).loops
+    assert path_length([loop[-1:]]) > 0.5
+    way = loop[-1][-1] - loop[-1][-2]
+    assert math.atan2(-way[0], way[1]) == pytest.approx(angle, abs=1e-9)
+    assert np.hypot(*loop[-1][-1]) == pytest.approx(10.0, rel=1e-12)
+    assert path_length([loop]) == pytest.approx(4.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("behind", [False, True])
+def test_a_crumb_at_a_corner_stays_where_it_is(behind: bool) -> None:
+    """Continued, its neighbor would leave the path."""
+    crumb = 1e-9
+    if behind:
+        (loop,) = cut("M0 0H1V1", 1.0 + crumb, 5).loops
+        expected = [(0.0, 0.0), (1.0, 0.0), (1.0, crumb)]
+    else:
+        (loop,) = cut("M0 0H1V1", 0.5, 5, offset=-(1.0 - crumb)).loops
+        expected = [(1.0 - crumb, 0.0), (1.0, 0.0), (1.0, 0.5 - crumb)]
+    found = [*(piece[0] for piece in loop), loop[-1][-1]]
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-15)
+
+
+def test_halving_ends_where_rounding_would_never_let_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dashes_module, "_EXACT", -1.0)
+    monkeypatch.setattr(dashes_module, "_MOST_HALVINGS", 4)
+    path = dashes_module._measured([np.array([(0.0, 0.0), (3.0, 4.0)])])
+    assert path is not None
+    assert len(path.low) == 2**5
+    assert path.length == pytest.approx(5.0, rel=1e-14)
+
+
+def test_where_halving_and_steps_end_dashes_are_near_what_is_asked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Lowered, as no path comes near these ceilings: nothing is lost, and nothing goes on."""
+    whole = cut(SMOOTH, 5, 3)
+    monkeypatch.setattr(dashes_module, "_MOST_HALVINGS", 1)
+    monkeypatch.setattr(dashes_module, "_STEPS", 3)
+    rough = cut(SMOOTH, 5, 3)
+    assert len(rough.loops) == len(whole.loops)
+    for one, other in zip(rough.loops, whole.loops, strict=True):
+        ends = np.stack([other[0][0], other[-1][-1]])
+        np.testing.assert_allclose(np.stack([one[0][0], one[-1][-1]]), ends, rtol=0, atol=0.5)
 
 
 @pytest.mark.parametrize("lengths", [(1e-9, 1e-9), (1e-300, 0.0), (0.0, 1e-4), (1e-3, 1e-3, 0, 0)])

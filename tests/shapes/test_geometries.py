@@ -132,6 +132,16 @@ def test_refused() -> None:
             far.to_shapely(tolerance)
 
 
+@pytest.mark.parametrize(
+    ("geometry", "got"),
+    [(shapely.Point(1, 2), "1 Point"), (shapely.GeometryCollection(), "none"),
+     (shapely.MultiLineString([[(0, 0), (1, 1)]]), "1 MultiLineString")],
+)  # fmt: skip
+def test_geometries_without_a_polygon_are_refused(geometry: object, got: str) -> None:
+    with pytest.raises(ss.InputError, match=f"expected polygons, got {got}$"):
+        ss.Shape.from_shapely(geometry)
+
+
 def test_without_shapely(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "shapely", None)
     with pytest.raises(ss.MissingExtraError, match=r'pip install "splinesdf\[maps\]"'):

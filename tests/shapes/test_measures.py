@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,6 +13,7 @@ from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
 import splinesdf as ss
+from splinesdf.shapes import measures
 from tests.named_shapes import gamma
 
 ELLIPSE = (3.0, 1.0)
@@ -70,6 +73,42 @@ def test_closed_forms(name: str) -> None:
     shape = make()
     assert shape.area == pytest.approx(area, rel=2e-14)
     assert shape.length == pytest.approx(length, rel=2e-14)
+
+
+# Cubics that turn back so fast that one rule misses how short they are there.
+NEAR_CUSPS = [[(0.0, 0.0), (1.0, 1.0), (gap, 1.0), (1.0, 0.0)] for gap in (1e-2, 1e-5, 1e-9, 0.0)]
+
+
+def near_cusp(corners: list[tuple[float, float]]) -> tuple[ss.Shape, float]:
+    """A cubic and its chord, and their length by mpmath, cut where the speed is least."""
+    steps = [
+        [3 * mpmath.mpf(b[k]) - 3 * mpmath.mpf(a[k]) for a, b in itertools.pairwise(corners)]
+        for k in (0, 1)
+    ]
+
+    def speed(t: mpmath.mpf) -> mpmath.mpf:
+        x, y = ((1 - t) ** 2 * a + 2 * t * (1 - t) * b + t * t * c for a, b, c in steps)
+        return mpmath.sqrt(x * x + y * y)
+
+    with mpmath.workdps(20):
+        places = [0.5 + way * 10.0**-k for k in range(2, 11, 2) for way in (-1, 1)]
+        exact = mpmath.quad(speed, [0, *sorted([*places, 0.5]), 1])
+    line = [corners[-1], corners[0]]
+    return ss.Shape.from_pieces([[corners, line]]), float(exact) + math.dist(*line)
+
+
+@pytest.mark.parametrize("corners", NEAR_CUSPS)
+def test_arcs_that_nearly_stand_still_are_as_long_as_they_are(
+    corners: list[tuple[float, float]],
+) -> None:
+    shape, length = near_cusp(corners)
+    assert shape.length == pytest.approx(length, rel=2e-14)
+
+
+def test_no_part_is_lost_where_halving_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    shape, length = near_cusp(NEAR_CUSPS[1])
+    monkeypatch.setattr(measures, "_HALVINGS", 1)
+    assert shape.length == pytest.approx(length, rel=1e-9)
 
 
 # Whole numbers: what Shapely takes for valid by 1e-133 is a slit to us.

@@ -237,3 +237,32 @@ def test_where_rounding_parts_a_curve_no_sliver_is_left() -> None:
 def test_a_curve_with_a_cusp_within_it_is_refused() -> None:
     with pytest.raises(ss.InputError, match=r"cannot be resolved near t = 0\.5"):
         stroked("M20 20C80 80 20 80 80 20", Pen(9.0))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_corners_as_round_as_the_stroke_end_where_the_lines_beside_them_do(seed: int) -> None:
+    """A rounded rectangle, and a line that is flush with its inner side."""
+    rng = np.random.default_rng(seed)
+    x, y, r = (round(float(v), 2) for v in rng.uniform((-40, -40, 0.4), (40, 40, 1.9)))
+    wide, high = (round(float(v), 2) for v in rng.uniform(8.0, 15.0, 2))
+    corner = f"{r} {r} 0 0 1"
+    path = (
+        f"M{x + r} {y}h{wide - 2 * r}a{corner} {r} {r}v{high - 2 * r}a{corner} {-r} {r}"
+        f"h{2 * r - wide}a{corner} {-r} {-r}v{2 * r - high}a{corner} {r} {-r}z"
+    )
+    shape = stroked(f"{path}M{x + r} {y + 2 * r}H{x + 3 * r}", Pen(2.0 * r))
+    outer = (wide + 2 * r) * (high + 2 * r) - (4.0 - math.pi) * (2.0 * r) ** 2
+    inner = (wide - 2 * r) * (high - 2 * r) - 4.0 * r * r
+    assert shape.area == pytest.approx(outer - inner, rel=1e-9)
+    assert len(loops(shape.boundary)) == 2
+
+
+def test_an_icon_with_such_corners_is_drawn(tmp_path: Path) -> None:
+    """Feather's clipboard.svg (MIT)."""
+    (tmp_path / "icon.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="24" height="24" fill="none" '
+        'stroke="#000" stroke-width="2" stroke-linecap="round" stroke-linejoin="round">'
+        '<path d="M16 4h2a2 2 0 0 1 2 2v14a2 2 0 0 1-2 2H6a2 2 0 0 1-2-2V6a2 2 0 0 1 2-2h2"/>'
+        '<rect x="8" y="2" width="8" height="4" rx="1" ry="1"/></svg>'
+    )
+    assert not judged(tmp_path / "icon.svg", 256, stroke="outline")

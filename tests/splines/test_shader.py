@@ -39,6 +39,16 @@ def test_numbers_are_in_the_table() -> None:
     assert code.isascii()
 
 
+def test_grid_lines_are_in_the_table_after_the_cells() -> None:
+    """Those of x, then those of y, four numbers a texel."""
+    x, y = np.array([0.0, 0.25, 1.0, 1.5]), np.array([-1.0, 0.0, 0.125])
+    code, table = flat(Grid.from_lines(x, y)).to_glsl()
+    numbers = table.reshape(-1)[8 * 6 :]
+    assert np.array_equal(numbers[:7], [*x, *y])
+    assert not numbers[7:].any()
+    assert f"sdf_texel({2 * 6} + k / 4)" in code
+
+
 def test_too_many_cells_for_a_texture(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shader_table, "_HIGH", 1)  # for one of 2048 x 2048 they take gigabytes
     flat(Grid.uniform(UNIT, 32, 32)).to_glsl()
@@ -57,6 +67,8 @@ def test_places_that_float32_does_not_tell_apart() -> None:
         ss.texture(square, 8, range=0.5).to_glsl()
     with pytest.raises(ss.InputError, match="of its smaller sides of the origin"):
         flat(Grid.uniform((1e6, 0.0, 1e6 + 1.0, 1.0), 2, 2)).to_glsl()
+    with pytest.raises(ss.InputError, match="numbers that float32 can hold, got 1e\\+39"):
+        flat(Grid.uniform((0.0, 0.0, 1e39, 1e39), 2, 2)).to_glsl()
     lines = np.array([0.0, 1e-9, 1.0]) + 1.0, np.array([0.0, 1.0])
     with pytest.raises(ss.InputError, match="grid lines x that float32 tells apart"):
         flat(Grid.from_lines(*lines)).to_glsl()

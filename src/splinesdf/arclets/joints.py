@@ -80,19 +80,18 @@ def joints(boundary: Arclets, vertices: Vertices, *, outside: bool) -> Joints:
 def _closed(boundary: Arclets) -> Ints:
     """Find the arclet that follows each, each once, also where more than two branches meet.
 
-    There rounding may leave an end without a start; it gets the nearest start that is left.
+    There rounding may lead two ends to one start; one of them gets the nearest that is left.
     """
     following = boundary.following.copy()
     count = len(following)
-    if (following >= 0).all() and len(np.unique(following)) == count:
+    if len(np.unique(following)) == count:
         return following
     gap = np.hypot(*(boundary.start[following] - boundary.end).T)
-    gap[following < 0] = np.inf
     # Of several ends that lead to one start the nearest keeps it.
     order = np.argsort(-gap, kind="stable")
     taken = np.full(count, -1)
     taken[following[order]] = order
-    ends = np.flatnonzero((following < 0) | (taken[following] != np.arange(count)))
+    ends = np.flatnonzero(taken[following] != np.arange(count))
     kept = np.ones(count, dtype=np.bool_)
     kept[ends] = False
     led_to = np.zeros(count, dtype=np.bool_)

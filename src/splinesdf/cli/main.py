@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 
@@ -48,11 +47,6 @@ def main() -> None:
         _fail(_in_words(error))
     except ss.SplineSDFError as error:
         _fail(str(error))
-    except BrokenPipeError:
-        # Whoever read the output has enough of it ("| head"); so that the interpreter does not
-        # complain when it flushes what is left:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
     except MemoryError:
         _fail("not enough memory: raise the tolerance, or ask for a band")
     sys.exit(status if isinstance(status, int) else 0)

@@ -128,8 +128,9 @@ def _in_vain(
 ) -> Bools:
     """Which chains on top of others are kept in vain: more begin than end where they begin.
 
-    And more end than begin where they end. So it is where three lie on each other that are not cut
-    in the same places: of a boundary as many chains end as begin in each point.
+    And more end than begin where they end, or the last of several does of which each leads on to
+    the next. So it is where three lie on each other that are not cut in the same places: of a
+    boundary as many chains end as begin in each point.
     """
     some = np.flatnonzero(keep & ~parts.closed)
     group = groups(chain_ends(outline, parts)[:, some].reshape(-1, 2), near).reshape(2, -1)
@@ -142,7 +143,38 @@ def _in_vain(
             result[some[k]] = True
             more[begin[k]] -= 1
             more[end[k]] += 1
+    for first in np.flatnonzero(more > 0).tolist():
+        free = np.flatnonzero(doubled[some] & ~result[some])
+        for _ in range(int(more[first])):
+            way = _way(first, more < 0, begin[free], end[free])
+            if not way:
+                break
+            rows = free[way]
+            result[some[rows]] = True
+            more[first] -= 1
+            more[end[rows[-1]]] += 1
+            free = free[~result[some[free]]]
     return result
+
+
+def _way(first: int, goal: Bools, begin: Ints, end: Ints) -> list[int]:
+    """The fewest edges from a point to one of some others, in order; none if there is no way."""
+    order = np.argsort(begin, kind="stable")
+    starts = np.searchsorted(begin[order], np.arange(len(goal) + 1))
+    by: dict[int, int] = {first: -1}  # the edge that led to each point
+    points = [first]
+    for point in points:  # it grows
+        if goal[point]:
+            way = []
+            while by[point] >= 0:
+                way.append(by[point])
+                point = int(begin[by[point]])
+            return way[::-1]
+        for edge in order[starts[point] : starts[point + 1]].tolist():
+            if (to := int(end[edge])) not in by:
+                by[to] = edge
+                points.append(to)
+    return []
 
 
 def _cut_in_vain(outline: Arclets, parts: Parts, keep: Bools, left: Bools, near: float) -> Bools:

@@ -19,7 +19,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from splinesdf.errors import InputError, MissingExtraError
-from splinesdf.ground.arrays import Floats
 from splinesdf.io.readers.fonts_packed import check_unpacked
 from splinesdf.io.readers.reading import Part, Reading
 from splinesdf.io.readers.source import Options, Source, printable
@@ -251,9 +250,8 @@ def outline(glyphs: Any, name: str) -> Loops:
 
         def _piece(self, *points: tuple[float, float]) -> None:
             count()
-            piece: Floats = np.array([self._getCurrentPoint(), *points], dtype=np.float64)
-            if np.any(piece != piece[0]):
-                loops[-1].append(piece)
+            # Of no length, too: whoever makes a shape of it leaves that out.
+            loops[-1].append(np.array([self._getCurrentPoint(), *points], dtype=np.float64))
 
     glyphs[name].draw(Pen(glyphs))
     return [loop for loop in loops if loop]

@@ -126,7 +126,7 @@ def _outlines(reading: Reading) -> tuple[list[_Outline], tuple[str, ...]]:
     for element, loop in every:
         try:
             (pieces,) = closed_loops([loop], close=True)
-        except InputError:  # it is nothing but a point
+        except InputError:  # it is nothing but a point, for its place
             continue
         closed.append(_Outline(element, pieces))
     if not reading.once or (len(closed) == 1 and reading.rule != "evenodd"):

@@ -10,6 +10,7 @@ import numpy as np
 from splinesdf.contours.biarcs import arc_elements
 from splinesdf.contours.conics import Element, Kind, elements, unfolded
 from splinesdf.contours.contour import Contour, box, evaluate, halve
+from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.io.writers.options import Options
 
@@ -25,6 +26,9 @@ _THINNEST = 1e-9
 _CHECKS = np.linspace(0.0, 1.0, 9)
 # Above 3 the cubic's end tangents would overshoot P1 and cross; from 2 on they are just halved.
 _HEAVIEST = 2.0
+# Halvings of an arc: each divides the error by about 64 once the arc is nearly a parabola. More are
+# out of reach unless the tolerance is one of rounding; fewer: heavy arcs are refused.
+_MOST_HALVINGS = 40
 _MARGIN = 0.05
 _COLORS = {-1: "#1f77b4", 0: "#000000", 1: "#d62728"}  # inside, the shape, outside
 
@@ -177,13 +181,16 @@ def _to_circle(vectors: Floats, radii: Floats, degrees: float) -> Floats:
 def _cubics(arc: Floats, weight: float, tolerance: float) -> str:
     """Commands C for a conic arc, halved until each cubic is within the tolerance."""
     arcs, weights = arc[None], np.array([weight])
-    # Each halving divides the error by about 64 once the arc is nearly a parabola; 40 are out
-    # of reach, a guard against a tolerance at the level of rounding.
-    for _ in range(40):
+    for _ in range(_MOST_HALVINGS):
         coarse = (weights > _HEAVIEST) | (_cubic_errors(arcs, weights) > tolerance)
         if not coarse.any():
             break
         arcs, weights = halve(arcs, weights, coarse)
+    else:
+        raise InputError(
+            f"expected arcs that cubics follow to {tolerance:.3g}, got one that is not near enough "
+            f"after {_MOST_HALVINGS} halvings: raise the tolerance"
+        )
     share = (4.0 * weights / (3.0 * (1.0 + weights)))[:, None]
     early = arcs[:, 0] + share * (arcs[:, 1] - arcs[:, 0])
     late = arcs[:, 2] + share * (arcs[:, 1] - arcs[:, 2])

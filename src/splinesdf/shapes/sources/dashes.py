@@ -171,21 +171,21 @@ def _measured(loop: Sequence[Floats]) -> _Path | None:
     high = np.concatenate([cut[1:] for cut in cuts])
     whole = _lengths(slopes[which], low, high)
     done: list[tuple[Ints, Floats, Floats, Floats]] = []
-    for halving in range(_MOST_HALVINGS + 1):
+    halving = 0
+    while len(low):
         middle = 0.5 * (low + high)
         left = _lengths(slopes[which], low, middle)
         right = _lengths(slopes[which], middle, high)
         away = np.abs(roots[which] - middle[:, None]).min(axis=1)
         good = away >= _CLEAR * (high - middle)
         good &= np.abs(left + right - whole) <= _EXACT * most
-        good |= halving == _MOST_HALVINGS
+        good |= halving >= _MOST_HALVINGS
         done.append((which[good], low[good], middle[good], left[good]))
         done.append((which[good], middle[good], high[good], right[good]))
-        if good.all():
-            break
         bad = ~good
         which, whole = which[bad].repeat(2), _in_turn(left[bad], right[bad])
         low, high = _in_turn(low[bad], middle[bad]), _in_turn(middle[bad], high[bad])
+        halving += 1
     which, low, high, length = (np.concatenate(parts) for parts in zip(*done, strict=True))
     order = np.lexsort((low, which))
     reached = np.concatenate([[0.0], np.cumsum(length[order])])

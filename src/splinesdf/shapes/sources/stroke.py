@@ -44,6 +44,9 @@ _STILL = 1e-12
 # Next to an end with a short handle a parallel is no better known than its direction: it is
 # compiled to so many times the usual tolerance, 4 units in the last place, whichever suffices.
 _LOOSER = (1.0, 1e2, 1e4)
+# Centers of such an arc, seen from its ends, are one if nearer than this share of the half width.
+# Larger: borders are off by so much; smaller: rounding puts a line between them.
+_SAME = 1e-13
 # Stretches of a piece shorter than this (of its parameter) are left out: rounding made them.
 _SHORT = 1e-9
 
@@ -228,10 +231,19 @@ def _sector(run: list[_Stretch], outer: float) -> Loops:
     side = [part for piece, low, high, _ in run for part in _beside(piece, low, high, outer)]
     if _is_loop(run):
         return region([side], "nonzero")
-    piece = run[0].piece
-    center = _Beside(piece, 0.0, 1.0, None)(np.linspace(0.0, 1.0, 17)).mean(axis=0)
-    lines = [np.array([side[-1][-1], center]), np.array([center, side[0][0]])]
+    # By first derivatives alone, so that bands before and after have their corners there as well:
+    # what second ones of compiled arcs know is farther off than what counts as touching.
+    spots = [run[0].piece[0] - outer * _left_of(run[0].piece, 0)]
+    spots += [stretch.piece[-1] - outer * _left_of(stretch.piece, 1) for stretch in run]
+    way = [side[-1][-1], spots[-1]]
+    way += [spot for spot in spots[-2::-1] if np.abs(spot - way[-1]).max() > _SAME * abs(outer)]
+    lines = [np.array(pair) for pair in pairwise([*way, side[0][0]])]
     return region([[*side, *lines]], "nonzero")
+
+
+def _left_of(piece: Floats, end: int) -> Floats:
+    """The unit vector to the left of the piece's start (0) or end (1)."""
+    return np.asarray(np.array([-1.0, 1.0]) * end_tangent(piece, end)[::-1])
 
 
 def _is_loop(run: list[_Stretch]) -> bool:
@@ -264,7 +276,7 @@ def _between(run: list[_Stretch], one: float | None, other: float | None) -> Loo
 
 def _beside(piece: Floats, low: float, high: float, offset: float | None) -> list[Floats]:
     if len(piece) == 2 and offset is not None:
-        return [piece + offset * np.array([-1.0, 1.0]) * end_tangent(piece, 0)[::-1]]
+        return [piece + offset * _left_of(piece, 0)]
     curve, largest = _Beside(piece, low, high, offset), float(np.abs(piece).max())
     for looser in _LOOSER:
         with suppress(InputError):
