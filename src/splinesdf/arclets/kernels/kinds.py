@@ -68,7 +68,7 @@ def _find_three(arcs: Floats, piece: Ints, interval: Floats, which: Ints, three:
         if row[2] < 0 or _away(interval, i, middle) <= _away(interval, row[2], middle):
             row[2] = i
     for p in range(which.shape[0]):
-        first, last, between = which[p, 0], which[p, 1], which[p, 2]
+        first, last, between = which[p]
         if first < 0:
             continue
         low, high = _low(interval, between), _high(interval, between)
