@@ -84,9 +84,7 @@ def _closed(boundary: Arclets) -> Ints:
     """
     following = boundary.following.copy()
     count = len(following)
-    reached = np.zeros(count, dtype=np.bool_)
-    reached[following] = True
-    if reached.all():
+    if len(np.unique(following)) == count:
         return following
     gap = np.hypot(*(boundary.start[following] - boundary.end).T)
     # Of several ends that lead to one start the nearest keeps it.

@@ -31,27 +31,6 @@ class Arclets(NamedTuple):
     chain: Ints  # (2 n - 1,) 1 if the node's arclets follow one another
 
 
-class Hierarchy(NamedTuple):
-    """The tree over arclets: the columns of `Arclets` of these names, as a kernel fills them in."""
-
-    tree: Floats
-    boxes: Floats
-    range: Ints
-    chain: Ints
-
-
-class Arcs(NamedTuple):
-    """Arcs of any degrees up to d that are short and monotone, and where they come from."""
-
-    # (n, d + 1, 2) less a point of each one's piece, such as its cusp: near to that, numbers are as
-    # good as they are small, and directions no rounding. Nothing beyond an arc's own degree.
-    control: Floats
-    start: Floats  # (n, 2) where the first of them lies
-    degree: Ints  # (n,)
-    piece: Ints  # (n,) which piece of the shape
-    interval: Floats  # (n, 2) the parameters of that piece at the arc's start and end
-
-
 class Bends(NamedTuple):
     """How arclets bend and how they are joined, see `splinesdf.arclets.curvature`."""
 

@@ -68,23 +68,9 @@ def uncounted(function: Function) -> Function:
     return _compiled(function, linked=True)
 
 
-def kernel_as_written(function: Function) -> Function:
-    """As `kernel`, with sums as they are written: none is fused or put in another order.
-
-    What shapes are cut into is then the same on all machines, to the bit, and all that is
-    computed of it begins with the same numbers.
-    """
-    return _compiled(function, linked=False, fast=False)
-
-
-def uncounted_as_written(function: Function) -> Function:
-    """As `uncounted`, with sums as they are written, see `kernel_as_written`."""
-    return _compiled(function, linked=True, fast=False)
-
-
-def _compiled(function: Function, linked: bool, fast: bool = True) -> Function:
+def _compiled(function: Function, linked: bool) -> Function:
     module = function.__module__.partition(".")[2]
-    settings = _SETTINGS | {"_nrt": not linked} | ({} if fast else {"fastmath": False})
+    settings = _SETTINGS | {"_nrt": not linked}
     try:
         with _folder_for(function):
             compiled = njit(cache=True, no_cpython_wrapper=linked, **settings)(function)

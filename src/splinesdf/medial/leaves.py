@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from splinesdf.arclets.crossings import control_points
+from splinesdf.arclets.curvature import derivative, product
 from splinesdf.arclets.points import points_at, tangents_at
 from splinesdf.arclets.tables import Arclets
 from splinesdf.ground.arrays import Floats, Ints
-from splinesdf.medial.bernstein import derivative, product
 from splinesdf.medial.tables import (
     ARC,
     BEND_LEAF,

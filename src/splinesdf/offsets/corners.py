@@ -53,8 +53,6 @@ def solved(
     shape: Shape, segments: OffsetSegments, corners: Corners, distance: float, smooth: float
 ) -> OffsetSegments:
     """Move the ends and starts of corners to where their parallels cross or run on."""
-    if not len(corners.ending):
-        return segments
     segments = _drawn_back(shape, segments, corners, distance)
     segments = _to_crossings(shape, segments, corners, distance)
     return _filled_in(shape, segments, corners, distance, smooth)
@@ -103,7 +101,6 @@ def _to_crossings(
     at_a, at_b = segments.end[ending], segments.start[starting]
     gap = at_b[:, POINT] - at_a[:, POINT]
     part = np.ones(len(ending))
-    elements = segments.elements[np.concatenate([ending, starting])]
     for _ in range(_STEPS):
         va, vb = (at[:, TANGENT] * at[:, SPEED, None] for at in (at_a, at_b))
         cross = va[:, 0] * vb[:, 1] - va[:, 1] * vb[:, 0]
@@ -119,9 +116,8 @@ def _to_crossings(
         if not usable.any():
             break
         new_a, new_b = np.where(usable, new_a, a), np.where(usable, new_b, b)
-        # Both in one go: most offsets have few corners, and a call costs more than a point.
-        new_at = parallels(shape, elements, np.concatenate([new_a, new_b]), distance)
-        new_at_a, new_at_b = new_at[: len(a)], new_at[len(a) :]
+        new_at_a = parallels(shape, segments.elements[ending], new_a, distance)
+        new_at_b = parallels(shape, segments.elements[starting], new_b, distance)
         new_gap = new_at_b[:, POINT] - new_at_a[:, POINT]
         better = np.hypot(*new_gap.T) < np.hypot(*gap.T)
         part = np.where(better, 1.0, 0.5 * part)
@@ -180,14 +176,12 @@ def bridged(
     shape: Shape, segments: OffsetSegments, corners: Corners, distance: float, tolerance: float
 ) -> Bridges | None:
     """Bridge gaps that are still open; None if a bridge would leave the tolerance."""
-    none = np.empty(0, dtype=np.int64)
-    if not len(corners.ending):
-        return Bridges(none, np.empty((0, 2)), none.astype(np.bool_))
     gap = np.hypot(
         *(segments.start[corners.starting, POINT] - segments.end[corners.ending, POINT]).T
     )
     wide = gap > _MOVED * tolerance
     if not wide.any():
+        none = np.empty(0, dtype=np.int64)
         return Bridges(none, np.empty((0, 2)), none.astype(np.bool_))
     end, start = segments.end[corners.ending[wide]], segments.start[corners.starting[wide]]
     # The points of the shape whose parallels these are.

@@ -222,10 +222,6 @@ def _at(shape: Shape, distance: float, tolerance: float) -> list[Contour]:
         if best is not None and best.clear:
             break
     if best is not None:
-        said = (contour.tolerance == tolerance for contour in best.contours)
-        if all(said):
-            return nested(best.contours)
-        # The tolerance that was asked, to the bit, after a shift.
         return nested([replace(contour, tolerance=tolerance) for contour in best.contours])
     if has_no_fit(shape, distance):
         return [replace(hull_offset(shape, distance, tolerance), tolerance=tolerance)]

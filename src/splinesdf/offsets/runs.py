@@ -51,14 +51,11 @@ def runs_of(shape: Shape, loops: Loops, distance: float, tolerance: float) -> tu
     after = np.arange(1, count + 1)
     after[loops.first[1:] - 1] = loops.first[:-1]
     same = (kind == kind[after]) & loops.smooth
-    one = np.flatnonzero(same & (kind == ROUND))
-    if len(one):
-        other = after[one]
-        same[one] = (
-            (_off_circle(points[one], points[other], center[other]) <= allowed)
-            & (_off_circle(points[other], points[one], center[one]) <= allowed)
-            & (_tangents_apart(points[one], points[other], center[one], center[other]) <= SMOOTH)
-        )
+    same &= (kind != ROUND) | (
+        (_off_circle(points, points[after], center[after]) <= allowed)
+        & (_off_circle(points[after], points, center) <= allowed)
+        & (_tangents_apart(points, points[after], center, center[after]) <= SMOOTH)
+    )
     order = np.concatenate([_turned(np.arange(a, b), same[a:b]) for a, b in pairwise(loops.first)])
     # Runs end where their loops do.
     ends = ~same[order]
@@ -105,15 +102,8 @@ def _kinds(shape: Shape, loops: Loops, distance: float, allowed: float) -> Segme
     middle[own] = parallels(shape, segments.elements[own], at, distance)[:, POINT]
     # An arclet that is a line or a circle to rounding need not have such a parallel far from it.
     points = np.stack([start, middle, end], axis=1)
-    # Of those that are neither nothing is asked.
-    kept = np.flatnonzero(~bridge & (kind != FREE))
-    off = np.where(
-        kind[kept] == ROUND,
-        _off_circle(points[kept, 1:2], points[kept], center[kept]),
-        off_chord(points[kept]),
-    )
-    kind[kept[off > allowed]] = FREE
-    return SegmentKinds(kind, center, points)
+    off = np.where(kind == ROUND, _off_circle(points[:, 1:2], points, center), off_chord(points))
+    return SegmentKinds(np.where(~bridge & (off > allowed), FREE, kind), center, points)
 
 
 def _off_circle(some: Floats, points: Floats, center: Floats) -> Floats:
@@ -137,46 +127,26 @@ def _bent(points: Floats, center: Floats, kind: Ints, ends: Bools, allowed: floa
     """Find where straight and round runs must end early to stay on their line or circle."""
     result = np.zeros(len(ends), dtype=np.bool_)
     last = np.flatnonzero(ends)
-    first = np.concatenate([[0], last[:-1] + 1])
-    some = np.flatnonzero((last > first) & (kind[first] != FREE))
-    if not len(some):
-        return result
-    first, last = first[some], last[some]
-    off = _off_runs(points, center, kind[first], (first, last + 1 - first))
-    for run in np.flatnonzero(off > allowed).tolist():
-        a, b = int(first[run]), int(last[run]) + 1
+    for a, b in zip([0, *(last[:-1] + 1).tolist()], (last + 1).tolist(), strict=True):
+        if b - a < 2 or kind[a] == FREE:
+            continue
         if kind[a] == STRAIGHT:
             chain = np.concatenate([points[a : a + 1, 0], points[a:b, 2]])
-            result[a + _straight_parts(chain, allowed)] = True
+            if off_chord(chain[None])[0] > allowed:
+                result[a + _straight_parts(chain, allowed)] = True
             continue
-        begin = a
-        for k in range(a + 1, b):
-            if _off_circle(points[None, begin], points[None, k], center[None, begin])[0] > allowed:
-                result[k - 1], begin = True, k
+        if (
+            _off_circle(points[None, a, 1:2], points[a:b].reshape(1, -1, 2), center[None, a])[0]
+            > allowed
+        ):
+            first = a
+            for k in range(a + 1, b):
+                if (
+                    _off_circle(points[None, first], points[None, k], center[None, first])[0]
+                    > allowed
+                ):
+                    result[k - 1], first = True, k
     return result
-
-
-def _off_runs(points: Floats, center: Floats, kind: Ints, spans: tuple[Ints, Ints]) -> Floats:
-    """Measure how far runs are off the line, or the circle, of their first segments: (n_runs,).
-
-    Of a line from its start to its end, of a circle through the middle of the first segment.
-    Spans are the first row of each run, and how many it has.
-    """
-    first, count = spans
-    begin = np.cumsum(count) - count  # of each run in the rows of all runs
-    run = np.repeat(np.arange(len(first)), count)
-    rows = first[run] + np.arange(len(run)) - begin[run]
-    start = points[first, 0]
-    chord = points[first + count - 1, 2] - start
-    apart = points[rows, 2] - start[run]
-    cross = np.abs(chord[run, 0] * apart[:, 1] - chord[run, 1] * apart[:, 0])
-    cross[begin + count - 1] = 0.0  # the end of the line itself
-    length = np.hypot(chord[:, 0], chord[:, 1])
-    far = np.maximum.reduceat(np.hypot(apart[:, 0], apart[:, 1]), begin)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        line = np.where(length > 0.0, np.maximum.reduceat(cross, begin) / length, far)
-    off = _off_circle(points[first[run], 1:2], points[rows], center[first[run]])
-    return np.where(kind == STRAIGHT, line, np.maximum.reduceat(off, begin))
 
 
 def _straight_parts(chain: Floats, allowed: float) -> Ints:

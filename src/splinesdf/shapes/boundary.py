@@ -12,15 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from splinesdf.arclets.crossings import control_points, degrees
-from splinesdf.arclets.cutting import Sequences, assemble
+from splinesdf.arclets.cutting import Arcs, Sequences, assemble, ends, split
 from splinesdf.arclets.points import tangents_at
-from splinesdf.arclets.tables import Arclets, Arcs
+from splinesdf.arclets.tables import Arclets
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import NOTHING, Bools, Floats, Ints, as_points
 from splinesdf.shapes.loops import closed_loops
-from splinesdf.shapes.partial import ends_of, restrict, together
 from splinesdf.shapes.parts import MERGE, Parts, chain_ends, cut_at_crossings, groups, without_cuts
-from splinesdf.shapes.sides import Sides, bounding, look_at_sides
+from splinesdf.shapes.sides import bounding, look_at_sides
 
 # Nearer than this counts as touching, in units of the largest coordinate: a few times what
 # rounding and compiled pieces (4 ulp) can put between curves that are meant to coincide. Larger:
@@ -100,8 +99,6 @@ def filled_boundary(outline: Arclets, least: int, largest: float) -> Arclets | N
     touching = touching_of(largest)
     parts = cut_at_crossings(outline, touching)
     sides = look_at_sides(outline, parts, least, touching)
-    if _all_bound(parts, sides):
-        return outline
     keep, left = bounding(outline, parts, sides, touching)
     keep &= ~_in_vain(outline, parts, keep, left, sides.partner >= 0, 2.0 * MERGE * touching)
     if not keep.any():
@@ -111,15 +108,6 @@ def filled_boundary(outline: Arclets, least: int, largest: float) -> Arclets | N
     healed = _cut_in_vain(outline, parts, keep, left, 2.0 * MERGE * touching)
     parts, chains = without_cuts(parts, healed)
     return _closed(_rebuild(outline, parts, keep[chains], left[chains], touching))
-
-
-def _all_bound(parts: Parts, sides: Sides) -> bool:
-    """Whether contours meet nothing and have the inside on their left: all that was drawn bounds.
-
-    Most drawings are like that, and none of the questions about chains comes up.
-    """
-    apart = parts.closed.all() and (sides.partner < 0).all()
-    return bool(apart and (sides.left & ~sides.right).all())
 
 
 def some_boundary(outline: Arclets, fill: str, largest: float) -> Arclets:
@@ -220,19 +208,13 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         rows = np.flatnonzero(kept & (degree[parts.arclet] == d))
         arclet = parts.arclet[rows]
         control, start = control_points(outline.power[arclet, : d + 1]), outline.start[arclet]
-        arcs = restrict(
-            Arcs(
-                control,
-                start,
-                np.full(len(rows), d),
-                outline.piece[arclet],
-                outline.interval[arclet],
-            ),
+        arcs = _restrict(
+            Arcs(control, start, outline.piece[arclet], outline.interval[arclet]),
             parts.interval[rows],
         )
         turned = ~left[parts.chain[rows]]
         whole = parts.interval[rows, 1] == 1.0
-        arcs.start[turned] = np.where(whole[:, None], outline.end[arclet], ends_of(arcs))[turned]
+        arcs.start[turned] = np.where(whole[:, None], outline.end[arclet], ends(arcs))[turned]
         arcs.control[turned] = arcs.control[turned, ::-1]
         arcs.interval[turned] = arcs.interval[turned, ::-1]
         # What meets in one point does so to the bit.
@@ -240,12 +222,12 @@ def _rebuild(outline: Arclets, parts: Parts, keep: Bools, left: Bools, touching:
         begins = np.flatnonzero(np.where(turned, last[rows], parts.place[rows] == 0))
         arcs.start[begins] = meeting[side[begins], chain[begins]]
         stops = np.flatnonzero(np.where(turned, parts.place[rows] == 0, last[rows]))
-        arcs.control[stops, -1] += meeting[1 - side[stops], chain[stops]] - ends_of(arcs)[stops]
+        arcs.control[stops, -1] += meeting[1 - side[stops], chain[stops]] - ends(arcs)[stops]
         arcs_of.append(arcs)
         labels.append(label[parts.chain[rows]])
         places.append(np.where(turned, -parts.place[rows], parts.place[rows]))
     runs = Sequences(np.concatenate(labels), np.concatenate(places), parts.closed[keep])
-    boundary = assemble(together(arcs_of), runs, outline.origin)
+    boundary = assemble(arcs_of, runs, outline.origin)
     open_end = np.flatnonzero(boundary.following < 0)
     chain = np.flatnonzero(keep)[boundary.run[open_end]]
     boundary.end[open_end] = meeting[left[chain].astype(np.int64), chain]
@@ -279,6 +261,22 @@ def _meeting_points(outline: Arclets, parts: Parts, keep: Bools, near: float) ->
     _, representative = np.unique(group, return_index=True)
     points[:, joined] = some[representative][group].reshape(2, -1, 2)
     return points
+
+
+def _restrict(arcs: Arcs, interval: Floats) -> Arcs:
+    """The parts of arcs between two parameters each."""
+    low, high = interval.T
+    count = len(low)
+    result = Arcs(arcs.control.copy(), arcs.start.copy(), arcs.piece, arcs.interval.copy())
+    for at, part, whole in (
+        (high, slice(0, count), high == 1.0),
+        (low / high, slice(count, None), low == 0.0),
+    ):
+        cut = split(result, at)
+        result.control[~whole] = cut.control[part][~whole]
+        result.start[~whole] = cut.start[part][~whole]
+        result.interval[~whole] = cut.interval[part][~whole]
+    return result
 
 
 def _closed(boundary: Arclets) -> Arclets:

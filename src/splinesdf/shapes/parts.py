@@ -29,8 +29,6 @@ class Parts(NamedTuple):
 def cut_at_crossings(outline: Arclets, touching: float) -> Parts:
     """The arclets of a shape, cut wherever another one is within ``touching``."""
     pair, at = find_crossings(outline, touching)
-    if not len(pair):
-        return _uncut(outline)
     arclet, t = pair.ravel(), at.ravel()
     order = np.lexsort((t, arclet))
     arclet, t = arclet[order], t[order]
@@ -57,22 +55,6 @@ def cut_at_crossings(outline: Arclets, touching: float) -> Parts:
     high = np.where(last, 1.0, np.append(low[1:], 1.0))
     begin = (low > 0.0) | begins[part_arclet]
     return _in_chains(outline, part_arclet, np.column_stack([low, high]), begin)
-
-
-def _uncut(outline: Arclets) -> Parts:
-    """The parts of loops that nothing crosses: each is a chain."""
-    count = len(outline.run)
-    opens = np.diff(outline.run, prepend=-1) != 0
-    firsts, chain = np.flatnonzero(opens), np.cumsum(opens) - 1
-    every = np.arange(count)
-    return Parts(
-        arclet=every,
-        interval=np.tile([0.0, 1.0], (count, 1)),
-        chain=chain,
-        place=every - firsts[chain],
-        closed=np.ones(len(firsts), dtype=np.bool_),
-        following=np.arange(len(firsts)),
-    )
 
 
 def _in_chains(outline: Arclets, arclet: Ints, interval: Floats, begin: Bools) -> Parts:

@@ -60,10 +60,7 @@ def look_at_sides(outline: Arclets, parts: Parts, least: int, touching: float) -
     # What is nearest may lie on top of the chain; what is nearest beyond that does not.
     near, partner, at = _others(outline, place, parts.arclet[part], -1.0)
     partner = np.where(near <= 2.0 * touching, partner, -1)
-    clear, on_top = near.copy(), np.flatnonzero(near <= 2.0 * touching)
-    if len(on_top):
-        own = parts.arclet[part[on_top]]
-        clear[on_top], _, _ = _others(outline, place[on_top], own, 2.0 * touching)
+    clear, _, _ = _others(outline, place, parts.arclet[part], 2.0 * touching)
     # The clearest place of each chain; if possible one where no other passes through.
     crowded = (partner >= 0) | (clear <= MERGE * touching)
     order = np.lexsort((-clear, crowded, parts.chain[part]))
