@@ -7,6 +7,7 @@ import pytest
 
 import splinesdf as ss
 from benchmarks.offset_sweep import EXACT
+from benchmarks.speed_cases import comb
 from splinesdf.arclets.points import angles, tangents_at
 from splinesdf.offsets.kernels import trim as kernels
 from splinesdf.offsets.tables import Trimmed
@@ -57,6 +58,16 @@ def test_walls_twice_the_distance_apart_are_not_cut_to_pieces(name: str, distanc
     shape = parts()[name]
     usual, apart = (looks(shape, share * distance, 1e-8 * shape.size) for share in (1.02, 1.0))
     assert 0 < apart < 300 * usual
+
+
+def test_slots_side_by_side_are_not_cut_to_pieces() -> None:
+    # A million times as deep as they are wide, and fifty of them within the distance: one wall is
+    # nearer to all of a stretch, so that it need not be halved until few are near.
+    shape = comb(60)
+    assert looks(shape, 1e-4, 1e-5) < 20 * shape.piece_count
+    outside, *others = ss.offset(shape, 1e-4, tolerance=1e-5)
+    assert not others
+    assert np.ptp(outside.arcs[..., 0]) == pytest.approx(120e-6 + 2e-4, abs=1e-12)
 
 
 @pytest.mark.parametrize("angle", [0.0, 1.0])

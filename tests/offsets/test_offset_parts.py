@@ -106,6 +106,27 @@ def test_arcs_that_meet_are_found() -> None:
         assert bool(meetings(arcs, weights, following)) == bool(expected)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_all_pairs_of_chords_that_meet_are_found(seed: int) -> None:
+    # Of so many that boxes around boxes are looked at; in any order.
+    random = np.random.default_rng(seed)
+    start = random.uniform(-1.0, 1.0, (37, 2))
+    end = start + random.normal(size=(37, 2)) * 10.0 ** random.uniform(-2.0, 0.0, (37, 1))
+    arcs = np.stack([start, 0.5 * (start + end), end], axis=1)
+    # No arc follows another.
+    order = random.permutation(37)
+    pairs = np.empty((1000, 2), dtype=np.int64)
+    none = np.full(37, -1)
+    count = find_meetings(arcs, np.ones(37), none, order, (1e-12, 1e-7), pairs)
+    found = {(min(pair), max(pair)) for pair in pairs[:count].tolist()}
+    lines = shapely.linestrings(np.stack([start, end], axis=1))
+    expected = {
+        (i, j) for i in range(37) for j in range(i + 1, 37) if lines[i].intersects(lines[j])
+    }
+    assert len(found) == count
+    assert found == expected
+
+
 def test_neighbors_meet_only_where_they_come_back() -> None:
     def parabola(*points: tuple[float, float]) -> np.ndarray:
         return np.array(points)

@@ -10,6 +10,7 @@ import numpy as np
 
 from splinesdf.arclets.interpolation import CHECKS, NODES, TO_CHECKS, TO_CONTROL
 from splinesdf.arclets.tables import Arclets, Interpolation, Met
+from splinesdf.arclets.tree import search_tree
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.limits import limits_in_use, too_much
 
@@ -46,7 +47,7 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
         crossings as intersections,  # Numba loads only when it is used
     )
 
-    cone = _cones(arclets)
+    cone, among = _cones(arclets), search_tree(arclets)
     # Of three checks between each two nodes the middle one will do here: halving finds the rest.
     nodes = np.concatenate([NODES, CHECKS[1::3]])
     interpolation = Interpolation(
@@ -66,8 +67,8 @@ def find_crossings(arclets: Arclets, tolerance: float) -> Crossings:
             most=np.array([limits.crossings, limits.pairs], dtype=np.int64),
         )
         intersections.fill_crossings(
-            arclets.boxes,
-            arclets.range,
+            among.boxes,
+            among.range,
             arclets.following,
             arclets.arcs,
             cone,

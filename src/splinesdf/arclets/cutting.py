@@ -18,7 +18,7 @@ import numpy as np
 
 from splinesdf.arclets.curvature import curvature_ranges, thickness
 from splinesdf.arclets.tables import Arclets
-from splinesdf.arclets.tree import build_hierarchy
+from splinesdf.arclets.tree import along_z, build_hierarchy
 from splinesdf.ground.arrays import Bools, Floats, Ints
 
 # An arclet's control points stay within this share of its chord's length from the chord (about
@@ -162,12 +162,7 @@ def _near_ones_together(start: Floats, label: Ints) -> Ints:
     total = np.zeros((count, 3))
     np.add.at(total, label, np.column_stack([start, np.ones(len(start))]))
     middle = total[:, :2] / total[:, 2:]
-    low, high = middle.min(axis=0), middle.max(axis=0)
-    lattice = (middle - low) / np.maximum(high - low, np.finfo(np.float64).tiny) * 65535.0
-    cells = lattice.astype(np.int64)
-    key = np.zeros(count, dtype=np.int64)
-    for bit in range(16):
-        key |= ((cells[:, 0] >> bit) & 1) << (2 * bit) | ((cells[:, 1] >> bit) & 1) << (2 * bit + 1)
+    key = along_z(middle, 16)
     rank = np.empty(count, dtype=np.int64)
     rank[np.argsort(key, kind="stable")] = np.arange(count)
     return rank

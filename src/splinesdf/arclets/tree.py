@@ -13,13 +13,70 @@ visits about sqrt(n) of them, with capsules about log(n).
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 
+from splinesdf.arclets.tables import Arclets
 from splinesdf.ground.arrays import Floats, Ints
 
 # Rounding in a distance to a segment, in units of the coordinates' size. Too small: a true
 # minimum may be pruned; too large: a few nodes are visited in vain.
 _ROUNDING = 16 * 2.220446049250313e-16
+# A random point in the drawing's box lies in the boxes of about as many nodes as the tree is deep
+# if contours lie beside one another. If it lies in so many times more, the curve winds around
+# itself, as a spiral does, and all of its turns are looked at for each point. Larger: such curves
+# take time like the square of their length; smaller: a second tree is made in vain. With fewer
+# arclets than the second number it is never made.
+_WINDS, _MANY = 3.0, 1024
+# Bits of each coordinate in the order of places.
+_BITS = 24
+
+
+class SearchTree(NamedTuple):
+    """What searches for arclets in a place read, as the columns of `Arclets` of these names.
+
+    The range of a leaf is its arclet; the ranges of other nodes only say how many are below.
+    """
+
+    tree: Floats
+    boxes: Floats
+    range: Ints
+
+
+def search_tree(arclets: Arclets) -> SearchTree:
+    """The tree of arclets along the curve, or in the order of places where that is far better."""
+    tree, boxes, ranges = arclets.tree, arclets.boxes, arclets.range
+    count = len(arclets.start)
+    if count < _MANY:
+        return SearchTree(tree, boxes, ranges)
+    sides = boxes[:, 2:] - boxes[:, :2]
+    areas = sides[:, 0] * sides[:, 1]
+    if not float(areas.sum()) > _WINDS * math.log2(count) * float(areas[0]):
+        return SearchTree(tree, boxes, ranges)
+    leaves = ranges[:, 1] - ranges[:, 0] == 1
+    own, radius = boxes[leaves], tree[leaves, 5]
+    order = np.argsort(along_z(0.5 * (own[:, :2] + own[:, 2:])), kind="stable")
+    # Of arclets in this order no two are known to follow one another.
+    boxes, tree, ranges, _ = build_hierarchy(
+        arclets.start[order], arclets.end[order], own[order], radius[order], np.arange(count)
+    )
+    leaves = ranges[:, 1] - ranges[:, 0] == 1
+    ranges[leaves] = np.column_stack([order, order + 1])
+    tree[leaves, 6:] = ranges[leaves]
+    return SearchTree(tree, boxes, ranges)
+
+
+def along_z(points: Floats, bits: int = _BITS) -> Ints:
+    """Where points (n, 2) lie along the Z-shaped curve through the cells of a lattice: (n,)."""
+    low = points.min(axis=0)
+    reach = np.maximum(points.max(axis=0) - low, np.finfo(np.float64).tiny)
+    cells = ((points - low) / reach * (2.0**bits - 1.0)).astype(np.int64)
+    key = np.zeros(len(points), dtype=np.int64)
+    for bit in range(bits):
+        key |= ((cells[:, 0] >> bit) & 1) << (2 * bit) | ((cells[:, 1] >> bit) & 1) << (2 * bit + 1)
+    return key
 
 
 def build_hierarchy(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -35,22 +35,61 @@ def nested(contours: Sequence[Contour]) -> list[Contour]:
     low = np.array([contour.arcs.min(axis=(0, 1)) for contour in contours])
     high = np.array([contour.arcs.max(axis=(0, 1)) for contour in contours])
     places = np.array([_places(contour) for contour in contours])
-    encloses = np.zeros((count, count), dtype=np.bool_)
-    for i, contour in enumerate(contours):
-        if contour.closed:
-            within = (low[i] <= places) & (places <= high[i])
-            may = np.flatnonzero(np.count_nonzero(within.all(axis=2), axis=1) >= 2)
-            may = may[may != i]
-            if len(may):
-                encloses[i, may] = _most_enclosed(contour, places[may])
+    box, point = points_in_boxes(low, high, places.reshape(-1, 2))
+    # How many of its three points lie in the box of each contour that has any of them.
+    pair, within = np.unique(box * count + point // len(_PLACES), return_counts=True)
+    outer, inner = np.divmod(pair[within >= 2], count)
+    closed = np.array([contour.closed for contour in contours])
+    may = (outer != inner) & closed[outer]
+    outer, inner = outer[may], inner[may]
+    around = np.zeros(len(outer), dtype=np.bool_)
+    begins = np.flatnonzero(np.diff(outer, prepend=-1))
+    for a, b in pairwise([*begins.tolist(), len(outer)]):
+        around[a:b] = _most_enclosed(contours[int(outer[a])], places[inner[a:b]])
+    outer, inner = outer[around], inner[around]
     # The depth grows by one from a contour to those directly inside it.
-    depth = encloses.sum(axis=0)
-    result: list[Contour | None] = [None] * count
+    depth = np.bincount(inner, minlength=count)
+    parent = np.full(count, -1)
+    deepest = np.lexsort((-outer, depth[outer], inner))
+    parent[inner[deepest]] = outer[deepest]
+    result = list(contours)
     for j in np.argsort(depth, kind="stable").tolist():
-        around = np.flatnonzero(encloses[:, j])
-        parent = result[int(around[np.argmax(depth[around])])] if len(around) else None
-        result[j] = _inside(contours[j], parent)
-    return [contour for contour in result if contour is not None]
+        result[j] = _inside(contours[j], result[parent[j]] if parent[j] >= 0 else None)
+    return result
+
+
+def points_in_boxes(low: Floats, high: Floats, points: Floats) -> tuple[Ints, Ints]:
+    """All pairs of a box (n, 2), (n, 2) and a point (m, 2) in it, or on its sides.
+
+    Points are sorted into the cells of a grid, row after row, so that a box asks one stretch of
+    them for each row that it meets.
+    """
+    across = max(1, int(len(points) ** 0.5))
+    start = points.min(axis=0)
+    step = np.maximum(np.ptp(points, axis=0) / across, np.finfo(np.float64).tiny)
+
+    def cells(of: Floats) -> Ints:
+        with np.errstate(over="ignore"):  # of points on one line, far away
+            return np.asarray(np.clip((of - start) / step, 0, across - 1).astype(np.int64))
+
+    column, row = cells(points).T
+    order = np.argsort(row * across + column, kind="stable")
+    starts = np.searchsorted((row * across + column)[order], np.arange(across * across + 1))
+    first, last = cells(low), cells(high)
+    rows = last[:, 1] - first[:, 1] + 1
+    box, step_up = _counted(rows)
+    base = (first[box, 1] + step_up) * across
+    begin = starts[base + first[box, 0]]
+    stretch, place = _counted(starts[base + last[box, 0] + 1] - begin)
+    box, point = box[stretch], order[begin[stretch] + place]
+    within = ((low[box] <= points[point]) & (points[point] <= high[box])).all(axis=1)
+    return box[within], point[within]
+
+
+def _counted(counts: Ints) -> tuple[Ints, Ints]:
+    """Each number as often as its count says, and 0, 1, 2, ... beside it."""
+    which = np.repeat(np.arange(len(counts)), counts)
+    return which, np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
 
 
 def smallest_around(contours: Sequence[Contour]) -> list[int]:
@@ -98,7 +137,12 @@ def _most_enclosed(contour: Contour, places: Floats) -> Bools:
 
 
 def _inside(contour: Contour, parent: Contour | None) -> Contour:
-    return contour if contour.parent is parent else replace(contour, parent=parent)
+    """The contour with another parent: all else was checked when it was made."""
+    if contour.parent is parent:
+        return contour
+    result = object.__new__(Contour)
+    result.__dict__.update(contour.__dict__, parent=parent)
+    return result
 
 
 def enclosed(contour: Contour, points: Floats) -> Bools:

@@ -201,6 +201,14 @@ def _check_count(count: int, tolerance: Floats) -> None:
         )
 
 
+def _in_slabs(points: Floats) -> Ints:
+    """An order of points (n, 2) by slabs across x, in each by y: (n,)."""
+    count = len(points)
+    slab = np.empty(count, dtype=np.int64)
+    slab[np.argsort(points[:, 0])] = np.arange(count) // (int(count**0.5) + 1)
+    return np.lexsort((points[:, 1], slab))
+
+
 def _meeting(fitted: RunArcs, following: Ints) -> Ints:
     """Find arcs that meet other arcs elsewhere than at a common end."""
     from splinesdf.contours.kernels.meetings import (
@@ -208,7 +216,7 @@ def _meeting(fitted: RunArcs, following: Ints) -> Ints:
     )
 
     arcs, weights, _ = fitted
-    order = np.argsort(arcs[:, :, 0].min(axis=1))
+    order = _in_slabs(arcs[:, 1])
     room = 64
     while True:
         pairs = np.empty((room, 2), dtype=np.int64)

@@ -145,4 +145,4 @@ def walls_at(shape: Shape, distance: float) -> Walls:
     boundary = shape.boundary
     size = float(np.abs(boundary.boxes[0]).max()) + abs(distance)
     touch = joints_at(shape, distance).touch
-    return Walls(boundary.tree, boundary.arcs, shape.bends.rows, touch, _GRAIN * size)
+    return Walls(shape.search_tree.tree, boundary.arcs, shape.bends.rows, touch, _GRAIN * size)

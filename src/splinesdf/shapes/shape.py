@@ -17,6 +17,7 @@ from splinesdf.arclets.kinds import kinds
 from splinesdf.arclets.points import sampled_loops
 from splinesdf.arclets.tables import Arclets, Bends, Joints, Kinds
 from splinesdf.arclets.tangents import turns_at_ends
+from splinesdf.arclets.tree import SearchTree, search_tree
 from splinesdf.arclets.vertices import Vertices, vertices
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats, Ints, Page, as_page, as_points, finite, positive, whole
@@ -292,6 +293,11 @@ class Shape:
         if not len(self._vertices.ends):
             return self.joints
         return joints(self.boundary, self._vertices, outside=True)
+
+    @cached_property
+    def search_tree(self) -> SearchTree:
+        """The tree by which arcs of the boundary in a place are found, made on first use."""
+        return search_tree(self.boundary)
 
     @cached_property
     def _vertices(self) -> Vertices:

@@ -15,6 +15,8 @@ from splinesdf.ground.jit import kernel, uncounted
 
 # Halvings of one arc: enough from any arc to rounding. The stack holds one pair more for each.
 _DEPTH = 128
+# Boxes that wait to be looked at: no balanced tree is so deep.
+_LEVELS = 64
 
 
 @kernel
@@ -35,7 +37,7 @@ def find_meetings(
     following : ndarray, shape (n,)
         The arc that starts where each one ends.
     order : ndarray, shape (n,)
-        The arcs in the order of the smallest x of their control points.
+        The arcs such that those near one another stand near one another.
     apart : tuple of float
         Parts of arcs smaller than the first are not halved any more; parts that are both nearer
         than the second to an end that the arcs share are passed over.
@@ -47,29 +49,72 @@ def find_meetings(
     int
         How many there are, even if there is no room for all.
     """
-    count = arcs.shape[0]
-    boxes = np.empty((count, 4))
-    for i in range(count):
-        boxes[i, 0] = min(arcs[i, 0, 0], arcs[i, 1, 0], arcs[i, 2, 0])
-        boxes[i, 1] = min(arcs[i, 0, 1], arcs[i, 1, 1], arcs[i, 2, 1])
-        boxes[i, 2] = max(arcs[i, 0, 0], arcs[i, 1, 0], arcs[i, 2, 0])
-        boxes[i, 3] = max(arcs[i, 0, 1], arcs[i, 1, 1], arcs[i, 2, 1])
+    boxes = _box_tree(arcs, order)
+    half = boxes.shape[0] // 2
     stack = np.empty((_DEPTH, 2, 7))
     shared = np.empty((2, 2))
+    todo = np.empty(_LEVELS, dtype=np.int64)
     total = 0
-    for place in range(count):
-        i = order[place]
-        for k in range(place + 1, count):
-            j = order[k]
-            if boxes[j, 0] > boxes[i, 2]:
-                break
-            if boxes[j, 1] > boxes[i, 3] or boxes[i, 1] > boxes[j, 3]:
+    for place in range(order.shape[0]):
+        own = half + place
+        todo[0] = 1
+        size = 1
+        while size > 0:
+            size -= 1
+            node = todo[size]
+            # The last one under the node, and what comes before this one was asked already.
+            last = node
+            while last < half:
+                last = 2 * last + 1
+            if last <= own or not _overlap(boxes, node, own):
                 continue
-            if _meet(arcs, weights, (i, j), following, apart, stack, shared):
+            if node < half:
+                todo[size], todo[size + 1] = 2 * node + 1, 2 * node
+                size += 2
+            elif _meet(
+                arcs, weights, (order[place], order[node - half]), following, apart, stack, shared
+            ):
                 if total < pairs.shape[0]:
-                    pairs[total, 0], pairs[total, 1] = i, j
+                    pairs[total, 0], pairs[total, 1] = order[place], order[node - half]
                 total += 1
     return total
+
+
+@kernel
+def _box_tree(arcs: Floats, order: Ints) -> Floats:
+    """Boxes around the control points of arcs, and around pairs of boxes: 2 k and 2 k + 1 in k.
+
+    The arcs are the last half, in their order, filled up with boxes that nothing overlaps.
+    """
+    half = 1
+    while half < order.shape[0]:
+        half *= 2
+    boxes = np.empty((2 * half, 4))
+    for k in range(2 * half - 1, 0, -1):
+        boxes[k, 0] = boxes[k, 1] = np.inf
+        boxes[k, 2] = boxes[k, 3] = -np.inf
+        if k < half:
+            for side in range(4):
+                one, other = boxes[2 * k, side], boxes[2 * k + 1, side]
+                boxes[k, side] = min(one, other) if side < 2 else max(one, other)
+        elif k - half < order.shape[0]:
+            i = order[k - half]
+            for p in range(3):
+                for axis in range(2):
+                    boxes[k, axis] = min(boxes[k, axis], arcs[i, p, axis])
+                    boxes[k, 2 + axis] = max(boxes[k, 2 + axis], arcs[i, p, axis])
+    boxes[0] = boxes[1]
+    return boxes
+
+
+@uncounted
+def _overlap(boxes: Floats, one: int, other: int) -> bool:
+    return bool(
+        boxes[one, 0] <= boxes[other, 2]
+        and boxes[other, 0] <= boxes[one, 2]
+        and boxes[one, 1] <= boxes[other, 3]
+        and boxes[other, 1] <= boxes[one, 3]
+    )
 
 
 @uncounted

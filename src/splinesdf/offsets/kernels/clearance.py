@@ -88,7 +88,7 @@ def clip(
         ):
             return a, b, 0, True
         bent = max(abs(least), abs(most))
-        if gap <= 0.0 and _is_nearer_at_its_ends(
+        if gap <= 0.0 and is_nearer_at_its_ends(
             parallels, walls, (element, a, b), j, (bent, length), scratch
         ):
             return a, b, 0, True
@@ -174,7 +174,7 @@ def _stays_nearer(
 
 
 @uncounted
-def _is_nearer_at_its_ends(
+def is_nearer_at_its_ends(
     parallels: Parallels,
     walls: Walls,
     stretch: tuple[tuple[int, int], float, float],

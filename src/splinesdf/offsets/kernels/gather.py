@@ -15,7 +15,7 @@ from splinesdf.arclets.kernels.nearest import search
 from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import uncounted
-from splinesdf.offsets.kernels.clearance import bend_range
+from splinesdf.offsets.kernels.clearance import bend_range, is_nearer_at_its_ends
 from splinesdf.offsets.kernels.parallels import parallel_point
 from splinesdf.offsets.tables import Parallels, Walls
 
@@ -42,7 +42,6 @@ def gather(
     """
     x, y, farthest = disk
     segment, beside = chord
-    first, begin, length = own
     count = 0
     nodes[0] = 0
     size = 1
@@ -59,13 +58,42 @@ def gather(
             nodes[size + 1], nodes[size] = below(node, lo, hi)
             size += 2
             continue
-        if place[lo, 1] == first and (place[lo, 0] - begin) % place[lo, 2] < length:
+        if _is_own(place, own, lo):
             continue
         if count == most:
             return -1
         near[count] = lo
         count += 1
     return count
+
+
+@uncounted
+def _is_own(place: Ints, own: tuple[int, int, int], j: int) -> bool:
+    """Whether an arclet is of the own chain: the loop's first place, the chain's, its length."""
+    first, begin, length = own
+    return bool(place[j, 1] == first and (place[j, 0] - begin) % place[j, 2] < length)
+
+
+@uncounted
+def one_is_nearer(
+    parallels: Parallels,
+    walls: Walls,
+    place: Ints,
+    stretch: tuple[tuple[int, int], float, float],
+    own: tuple[int, int, int],
+    bounds: tuple[float, float],
+    scratch: Scratch,
+) -> bool:
+    """Whether what is nearest to the middle of a stretch is nearer to all of it than |d|.
+
+    Bounds are the largest curvature of the stretch, and no less than its length.
+    """
+    element, a, b = stretch
+    x, y, _, _, _, _ = parallel_point(parallels, element, 0.5 * (a + b))
+    _, hit, _ = _nearest(walls, x, y, abs(parallels.distance), scratch)
+    if hit < 0 or _is_own(place, own, hit):
+        return False
+    return is_nearer_at_its_ends(parallels, walls, stretch, hit, bounds, scratch)
 
 
 @uncounted

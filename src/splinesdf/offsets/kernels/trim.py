@@ -28,7 +28,7 @@ from splinesdf.arclets.tables import Scratch
 from splinesdf.ground.arrays import Floats, Ints
 from splinesdf.ground.jit import kernel, uncounted
 from splinesdf.offsets.kernels.clearance import bend_range, clearance_at, clip
-from splinesdf.offsets.kernels.gather import gather, is_near, surfaces
+from splinesdf.offsets.kernels.gather import gather, is_near, one_is_nearer, surfaces
 from splinesdf.offsets.kernels.parallels import parallel_point
 from splinesdf.offsets.tables import Chains, Parallels, Trimmed, Walls, Workroom
 
@@ -244,7 +244,8 @@ def _trim_stretch(
                 most = _FEW
             # No point of the stretch is farther from its chord.
             least, bend = bend_range(walls.bends, distance, element, middle[5], b - a)
-            bulge = 0.5 * max(abs(least), abs(bend)) * (1.12 * reach) ** 2 + grain
+            bent, length = max(abs(least), abs(bend)), 1.12 * reach
+            bulge = 0.5 * bent * length**2 + grain
             number = gather(
                 walls.tree,
                 place,
@@ -256,6 +257,11 @@ def _trim_stretch(
                 scratch.nodes,
             )
             if number < 0:
+                # Long walls side by side: one of them does what halving would do without end.
+                if one_is_nearer(
+                    parallels, walls, place, (element, a, b), own, (bent, length), scratch
+                ):
+                    continue
                 stack[size, 0], stack[size, 1], stack[size, 2] = m, b, -1.0
                 stack[size + 1, 0], stack[size + 1, 1], stack[size + 1, 2] = a, m, -1.0
                 size += 2
