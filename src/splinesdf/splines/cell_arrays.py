@@ -38,7 +38,7 @@ def to_arrays(spline: SplineSDF) -> dict[str, NDArray[Any]]:
             With s and t from -1/2 to 1/2 across a cell, its value is ``a0 + a1 s + a2 t + a3 s² +
             a4 s t + a5 t² + a6 max(s - t, 0)² + a7 max(s + t, 0)²``.
 
-        They are new at each call, and `numpy.savez` takes them: ``savez(path, **arrays)``.
+        They are new at each call, and ``numpy.savez`` takes them: ``savez(path, **arrays)``.
 
     Raises
     ------

@@ -84,7 +84,7 @@ def to_torch(spline: SplineSDF, *, dtype: Any = None, device: Any = None) -> Cal
 
 
 def to_jax(spline: SplineSDF) -> Callable[[Any], Any]:
-    """The spline as a function of JAX arrays, for `jax.grad`, `jax.jit` and `jax.vmap`.
+    """The spline as a function of JAX arrays, for ``jax.grad``, ``jax.jit`` and ``jax.vmap``.
 
     Returns
     -------
