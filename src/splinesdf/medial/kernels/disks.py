@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from splinesdf.arclets.kernels.arclet import point_on
+from splinesdf.arclets.kernels.arclet import derivatives, point_on
 from splinesdf.arclets.kernels.nearest import room_to_search, search
 from splinesdf.arclets.tables import Searched
 from splinesdf.ground.arrays import Floats, Ints
@@ -134,13 +134,9 @@ def closer(walk: Walk, arclet: int, t: float, x: float, y: float) -> float:
     """The parameter of a point's foot on an arclet, from one that is near, by Newton's method."""
     arcs = walk.arcs
     for _ in range(4):
-        cx = cy = dx = dy = ddx = ddy = 0.0
-        for k in range(3 + 2 * int(arcs[arclet, 0]), 3, -2):
-            ddx, ddy = ddx * t + dx, ddy * t + dy
-            dx, dy = dx * t + cx + arcs[arclet, k], dy * t + cy + arcs[arclet, k + 1]
-            cx, cy = (cx + arcs[arclet, k]) * t, (cy + arcs[arclet, k + 1]) * t
+        cx, cy, dx, dy, ddx, ddy = derivatives(arcs, arclet, t)
         cx, cy = cx + arcs[arclet, 3] - x, cy + arcs[arclet, 4] - y
-        slope = dx * dx + dy * dy + 2.0 * (cx * ddx + cy * ddy)
+        slope = dx * dx + dy * dy + (cx * ddx + cy * ddy)
         if not slope > 1e-9 * (dx * dx + dy * dy):
             break
         step = (cx * dx + cy * dy) / slope

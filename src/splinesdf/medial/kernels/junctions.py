@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from splinesdf.arclets.kernels.arclet import point_on
+from splinesdf.arclets.kernels.arclet import derivatives, point_on
 from splinesdf.arclets.kernels.nearest import room_to_search, search
 from splinesdf.arclets.tables import Searched
 from splinesdf.ground.arrays import Floats
@@ -269,14 +269,10 @@ def _root(arcs: Floats, i: int, span: tuple[float, float], x: float, y: float) -
     low, high = span
     t = 0.5 * (low + high)
     for _ in range(60):
-        cx = cy = dx = dy = ddx = ddy = 0.0
-        for k in range(3 + 2 * int(arcs[i, 0]), 3, -2):
-            ddx, ddy = ddx * t + dx, ddy * t + dy
-            dx, dy = dx * t + cx + arcs[i, k], dy * t + cy + arcs[i, k + 1]
-            cx, cy = (cx + arcs[i, k]) * t, (cy + arcs[i, k + 1]) * t
+        cx, cy, dx, dy, ddx, ddy = derivatives(arcs, i, t)
         cx, cy = cx + arcs[i, 3] - x, cy + arcs[i, 4] - y
         h = cx * dx + cy * dy
-        slope = dx * dx + dy * dy + 2.0 * (cx * ddx + cy * ddy)
+        slope = dx * dx + dy * dy + (cx * ddx + cy * ddy)
         if h < 0.0:
             low = t
         else:
