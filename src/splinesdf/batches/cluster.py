@@ -36,7 +36,9 @@ def rows_on(scheduler: Any, items: Iterator[Item]) -> Iterator[BatchRow]:
         client, own = scheduler, False
     elif isinstance(scheduler, str):
         try:
-            client, own = Client(scheduler, timeout=_PATIENCE), True
+            # Not the caller's default: what else this program computes stays where it was.
+            client = Client(scheduler, timeout=_PATIENCE, set_as_default=False)
+            own = True
         except (OSError, ValueError) as error:
             raise InputError(f"no Dask scheduler answers at {shown(scheduler)}") from error
     else:
@@ -57,7 +59,7 @@ def rows_on(scheduler: Any, items: Iterator[Item]) -> Iterator[BatchRow]:
             return future
 
         ahead = _AHEAD * max(1, sum(client.nthreads().values()))
-        coming = as_completed([submit(item) for item in islice(items, ahead)])
+        coming = as_completed([submit(item) for item in islice(items, ahead)], loop=client.loop)
         for future in coming:
             item = under_way.pop(future.key)
             yield _row(future, item)
