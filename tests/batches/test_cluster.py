@@ -14,6 +14,7 @@ import pytest
 import splinesdf as ss
 from tests.named_shapes import gamma
 
+dask = pytest.importorskip("dask", reason="Dask is not installed: splinesdf[dask]")
 distributed = pytest.importorskip("distributed", reason="Dask is not installed: splinesdf[dask]")
 
 # Dask closes some of its own sockets late.
@@ -79,6 +80,7 @@ def test_a_worker_that_is_killed_loses_nothing(
     address = client.scheduler.address
     again = ss.batch(shapes, "offset", output, distances=0.5, scheduler=address)
     assert len(again.kept) == len(shapes)
+    assert dask.config.get("scheduler", None) is None  # what else this program computes stays its own
     client.wait_for_workers(2, timeout=60)
     assert victim not in pids(client)
 
