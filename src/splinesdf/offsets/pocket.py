@@ -167,8 +167,8 @@ def cleared(
     times = 0.5 * min(xmax - xmin, ymax - ymin) / step
     if times > _MOST_RINGS:
         raise InputError(
-            f"expected a stepover that is taken {_MOST_RINGS:,} times at most, got {step:g}, which may be "
-            f"taken {times:.3g} times: give a longer one"
+            f"expected a stepover that is taken {_MOST_RINGS:,} times at most, got {step:g}, which "
+            f"may be taken {times:.3g} times: give a longer one"
         )
     # The paths that clear what is left lie at less than the radius by some tolerances, and must
     # lie farther off than where two rings meet halfway, within their own tolerances.
