@@ -55,18 +55,22 @@ def carved_text(
 
 def paths_in_file(carve: Carve, suffix: str, placement: Placement, by: float) -> list[Floats]:
     """The paths in the file's coordinates."""
-    points = np.concatenate(carve.paths)
-    line = np.stack([points[:, :2]] * 3, axis=1)  # an arc of no length at each point
-    proxy = Contour(
-        line,
-        np.ones(len(line)),
+    (there,), _ = placed([seen_from_above(carve)], suffix, placement, by)
+    z = by * placement.scale * np.concatenate(carve.paths)[:, 2]
+    stops = np.cumsum([len(path) for path in carve.paths])[:-1]
+    return np.split(np.column_stack([there.arcs[:, 0], z]), stops)
+
+
+def seen_from_above(carve: Carve) -> Contour:
+    """One line through all points of the paths; a piece of it begins at each."""
+    points = np.concatenate(carve.paths)[:, :2]
+    after = np.append(points[1:], points[-1:], axis=0)
+    return Contour(
+        np.stack([points, 0.5 * (points + after), after], axis=1),
+        np.ones(len(points)),
         closed=False,
         y_down=carve.y_down,
         unit=carve.unit,
         page=carve.page,
         tolerance=carve.tolerance,
     )
-    (there,), _ = placed([proxy], suffix, placement, by)
-    z = by * placement.scale * points[:, 2]
-    stops = np.cumsum([len(path) for path in carve.paths])[:-1]
-    return np.split(np.column_stack([there.arcs[:, 0], z]), stops)

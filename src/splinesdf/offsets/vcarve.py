@@ -144,6 +144,19 @@ class _Bit(NamedTuple):
         z = -self.slope * np.maximum(radii - self.least, 0.0) + 0.0
         return np.asarray(z if self.depth is None else np.maximum(z, -self.depth))
 
+    def along(self, disks: Floats) -> Floats:
+        """A polyline of disks (x, y, r) as one of x, y, z, with a point where z becomes 0.
+
+        Without it the last chord before a corner would be too deep: it is lowered, but z is 0 there.
+        """
+        over = disks[:, 2] - self.least
+        before = np.flatnonzero((over[:-1] > 0.0) != (over[1:] > 0.0))
+        share = over[before] / (over[before] - over[before + 1])
+        between = disks[before] + share[:, None] * (disks[before + 1] - disks[before])
+        between[:, 2] = self.least
+        every = np.insert(disks, before + 1, between, axis=0)
+        return np.column_stack([every[:, :2], self.heights(every[:, 2])])
+
 
 def _paths(shape: Shape, axis: MedialAxis, bit: _Bit) -> list[Floats]:
     """Tours along grooves and level sets, each of its whole depth."""
@@ -215,8 +228,8 @@ def _ways(
             if vertex >= 0:
                 low[k][end] = lowest[vertex]
             ends.append(vertex if vertex >= 0 else at[k, end])
-        z = bit.heights(points[k][:, 2] - low[k])
-        ways.append(Way(ends[0], ends[1], np.column_stack([points[k][:, :2], z])))
+        lowered = points[k] - low[k][:, None] * [0.0, 0.0, 1.0]
+        ways.append(Way(ends[0], ends[1], bit.along(lowered)))
     joined, after = set(at.values()), len(free)
     for ring in rings:
         own = numbers[after : after + len(ring) - 1].tolist()
