@@ -147,7 +147,7 @@ class _Bit(NamedTuple):
     def along(self, disks: Floats) -> Floats:
         """A polyline of disks (x, y, r) as one of x, y, z, with a point where z becomes 0.
 
-        Without it the last chord before a corner would be too deep: it is lowered, but z is 0 there.
+        Without it the last chord before a corner would be too deep: lowered, but not at its end.
         """
         over = disks[:, 2] - self.least
         before = np.flatnonzero((over[:-1] > 0.0) != (over[1:] > 0.0))
