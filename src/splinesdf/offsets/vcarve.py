@@ -34,6 +34,8 @@ from splinesdf.shapes.shape import Shape, check_shape
 _AXIS, _PRUNED, _CHORD, _LEVEL = 0.0625, 0.125, 0.125, 0.4
 # Fitted edges are off by the axis' tolerance in the plane and in r: the square root of 2, and some.
 _BOTH = 1.5
+# Radii that differ by this share of the largest are the same.
+_ROUNDING = 1e-12
 # More passes are a slip of a unit.
 _MOST_PASSES = 1000
 
@@ -97,7 +99,7 @@ def vcarve(
         raise InputError(f"expected an angle between 0 and 180 degrees, got {angle:g}")
     for name, value in (("tip", tip), ("allowance", allowance)):
         if finite(value, name) < 0.0:
-            raise InputError(f"expected a {name} of at least 0, got {value:g}")
+            raise InputError(f"expected {name} of at least 0, got {value:g}")
     for name, given in (("depth", depth), ("step down", step_down)):
         if given is not None:
             positive(given, name)
@@ -150,7 +152,9 @@ class _Bit(NamedTuple):
         Without it the last chord before a corner would be too deep: lowered, but not at its end.
         """
         over = disks[:, 2] - self.least
-        before = np.flatnonzero((over[:-1] > 0.0) != (over[1:] > 0.0))
+        # What is 0 but for rounding of the radii needs none.
+        side = np.sign(np.where(np.abs(over) <= _ROUNDING * disks[:, 2].max(), 0.0, over))
+        before = np.flatnonzero(side[:-1] * side[1:] < 0.0)
         share = over[before] / (over[before] - over[before + 1])
         between = disks[before] + share[:, None] * (disks[before + 1] - disks[before])
         between[:, 2] = self.least
