@@ -42,7 +42,7 @@ class Carve:
     >>> import splinesdf as ss
     >>> carve = ss.vcarve(ss.Shape.rectangle(0, 0, 40, 20), angle=90)
     >>> carve
-    <Carve rectangle: 1 path, length 76.57, 10 deep>
+    <Carve rectangle: 1 path, length 104.9, 10 deep>
     >>> carve.lifts, carve.paths[0].shape
     (1, (8, 3))
     """
