@@ -39,15 +39,19 @@ def depth_at(points: Floats, cuts: Floats, slope: float, tip: float = 0.0) -> Fl
     """How deep a cone leaves points: the deepest place along each cut, by thirds."""
     found = np.zeros(len(points))
     for start, end in cuts:
-        low, high = np.zeros(len(points)), np.ones(len(points))
-        for _ in range(40):  # what a cone leaves is concave along a straight cut
+        reach = -min(start[2], end[2]) / slope + tip
+        low, high = np.minimum(start, end)[:2] - reach, np.maximum(start, end)[:2] + reach
+        near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+        some = points[near]
+        low, high = np.zeros(len(near)), np.ones(len(near))
+        for _ in range(40 if len(near) else 0):  # what a cone leaves is concave along a cut
             thirds = low + (high - low) / 3.0, high - (high - low) / 3.0
             one, two = (
-                _depth(points, start + t[:, None] * (end - start), slope, tip) for t in thirds
+                _depth(some, start + t[:, None] * (end - start), slope, tip) for t in thirds
             )
             low, high = np.where(one < two, thirds[0], low), np.where(one < two, high, thirds[1])
         at = start + (0.5 * (low + high))[:, None] * (end - start)
-        found = np.maximum(found, _depth(points, at, slope, tip))
+        found[near] = np.maximum(found[near], _depth(some, at, slope, tip))
     return found
 
 
