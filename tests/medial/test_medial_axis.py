@@ -94,6 +94,23 @@ def test_near_squares_and_thin_rectangles(width: float) -> None:
     np.testing.assert_allclose(found[np.argsort(found[:, 0])], expected, atol=1e-13)
 
 
+@pytest.mark.parametrize("digits", range(3, 16))
+@pytest.mark.parametrize("points", [5, 6])
+def test_stars_that_are_almost_regular(points: int, digits: int) -> None:
+    """Where sites change on both sides at almost one disk: a tree with all tips as ends."""
+    rng = np.random.default_rng(digits)
+    angle = np.pi * np.arange(2 * points) / points + 0.3
+    corners = np.where(np.arange(2 * points) % 2, 3.0, 9.0) * np.exp(1j * angle)
+    corners += 10.0 ** (1 - digits) * (rng.uniform(-1, 1, 2 * points) + 1j * rng.uniform(-1, 1))
+    star = ss.Shape.from_points(np.column_stack([corners.real, corners.imag]))
+    axis = ss.medial_axis(star, 1e-3, prune=0.0 if digits < 10 else None)
+    assert axis.kind.count("corner") == points
+    assert len(axis.edges) == len(axis.points) - 1
+    # Radii at junctions: the middle is as far from all reflex corners.
+    assert axis.radius.max() == pytest.approx(3.0, abs=10.0 ** (2 - digits) + 1e-9)
+    assert set(axis.kind) == {"corner", "junction"}
+
+
 def test_between_circles_the_axis_is_an_ellipse() -> None:
     shape = ss.Shape.circle((0, 0), 3) - ss.Shape.circle((1, 0), 1)
     axis = ss.medial_axis(shape)

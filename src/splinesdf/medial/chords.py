@@ -17,6 +17,9 @@ from splinesdf.shapes.shape import Shape
 # Feet nearer than this share of the size are one place. Larger: junctions that near are one;
 # smaller: rounding in feet puts them in the wrong order.
 SNAP = 2e-12
+# Directions of feet in two disks are alike (radians), beside what `SNAP` does to small disks.
+# Larger: feet on several loops may be in the wrong order; smaller: rounding decides.
+_ALIKE = 1e-9
 # Disks smaller than this share of the size are rounding.
 _POINT = 1e-14
 # Where an element is looked at first: not its middle, where disks of symmetric shapes coincide.
@@ -181,7 +184,17 @@ def mapped(region: Region, chords: Disks) -> Map:
         arm[:, 0] * other[:, 1] - arm[:, 1] * other[:, 0], np.sum(arm * other, axis=1)
     )
     # Several at one foot: the one whose other foot is first, going on around the disk, is last.
-    order = np.lexsort((-np.mod(angle, 2.0 * np.pi), group, loop))
+    # Where feet are one but for rounding so are disks, and angles in them no longer tell: then
+    # places along the loop do.
+    angle = np.mod(angle, 2.0 * np.pi)
+    order = np.lexsort((-angle, group, loop))
+    apart = np.diff(group[order], prepend=-1) != 0
+    apart |= np.abs(np.diff(angle[order], prepend=0.0)) > _ALIKE
+    alike = np.empty(ends, dtype=np.int64)
+    alike[order] = np.cumsum(apart)
+    around = np.bincount(region.loops.loop, weights=region.loops.length)[loop]
+    far = np.mod(where[mate] - where, around)
+    order = np.lexsort((-far, alike, group, loop))
     following = np.empty(ends, dtype=np.int64)
     following[order] = np.roll(order, -1)
     firsts = np.flatnonzero(np.diff(loop[order], prepend=-1))

@@ -29,7 +29,9 @@ class Walk(NamedTuple):
     # of that at the start and the one before it. Of a fan the curvature is minus infinity.
     numbers: Floats
     arcs: Floats  # of `Joints`
-    of_arclet: Ints  # (n_arclets, 3) element of an arclet, fan before it and behind it, -1 for none
+    # (n_arclets, 5) element of an arclet, fan before it and behind it, -1 for none; the arclets
+    # before and behind it
+    of_arclet: Ints
 
 
 class Loops(NamedTuple):

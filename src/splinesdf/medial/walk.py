@@ -43,10 +43,11 @@ def walk_of(shape: Shape) -> tuple[Walk, Loops]:
     after[first[1:] - 1] = first[:-1]
     before = np.empty(total, dtype=np.int64)
     before[after] = np.arange(total)
-    of_arclet = np.full((count, 3), -1)
+    of_arclet = np.full((count, 5), -1)
     of_arclet[owner[place], 0] = place
     of_arclet[order[fan], 2] = place[fan] + 1
     of_arclet[:, 1][joints.following] = of_arclet[:, 2]
+    of_arclet[joints.following, 3], of_arclet[:, 4] = np.arange(count), joints.following
     numbers = np.zeros((total, 10))
     is_fan = kind == FAN
     numbers[:, :4] = joints.tangents[owner]

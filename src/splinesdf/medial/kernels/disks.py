@@ -91,6 +91,13 @@ def disks(searched: Searched, walk: Walk, most: float, found: Ints, room: Disks)
         if found[i] == 1:
             # The foot of the last center, which is the nearest but for the first foot.
             t = closer(walk, arclet, t, x + r * nx, y + r * ny)
+            if t <= 0.0 or t >= 1.0:
+                # The foot may be just inside the arclet beside, which is nearer by no more than the
+                # square of how far: less than a search sees, but the order of feet depends on it.
+                a = walk.of_arclet[arclet, 3 if t <= 0.0 else 4]
+                at = closer(walk, a, 1.0 if t <= 0.0 else 0.0, x + r * nx, y + r * ny)
+                if 0.0 < at < 1.0:
+                    arclet, t = a, at
             px, py = point_on(searched.arcs, arclet, t)
             vx, vy = px - x, py - y
             across = 2.0 * (nx * vx + ny * vy)
