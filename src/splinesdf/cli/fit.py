@@ -41,12 +41,12 @@ from splinesdf.splines.archive import SAVED
 )
 @click.option(
     "--operator",
-    help="S, W, V or P; quartic: O, C, D, V.  [default: S; P for bands; W on a tensor grid; O]",
+    help="S W V P; of others O C D X S V.  [default: S; P for bands; W on a tensor grid; O]",
 )
 @click.option(
     "--element",
     default="quadratic",
-    help="quadratic, quartic, or cubic (uniform).",
+    help="quadratic, quartic; uniform: cubic, S31, M222, M1122.",
     show_default=True,
 )
 @click.option("--no-proof", is_flag=True, help="Sample what a proof takes a closer look for.")
