@@ -87,7 +87,7 @@ class HierarchicalSpace:
         mesh = self.mesh
         split = mesh.child >= 0
         first = roots(mesh.shape, self.element.beyond)
-        return _split(first, np.column_stack([mesh.level, mesh.index])[split])
+        return split_cells(first, np.column_stack([mesh.level, mesh.index])[split])
 
     @property
     def places(self) -> Ints:
@@ -218,10 +218,10 @@ def refined(nodes: Nodes, bad: Ints, quarters: Bools) -> Nodes:
     """
     cell, quarter = np.nonzero(quarters)
     cells = np.column_stack([nodes.level[bad], nodes.place[bad]])[cell]
-    return _split(nodes, (cells[:, None] + _BESIDE[quarter]).reshape(-1, 3))
+    return split_cells(nodes, (cells[:, None] + _BESIDE[quarter]).reshape(-1, 3))
 
 
-def _split(nodes: Nodes, targets: Ints) -> Nodes:
+def split_cells(nodes: Nodes, targets: Ints) -> Nodes:
     """The tree in which cells (k, 3), each a level and its place there, are split."""
     from splinesdf.spaces.kernels.hierarchical import mark  # Numba loads only when it is used
 
