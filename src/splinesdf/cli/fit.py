@@ -113,10 +113,10 @@ def _check_fit(path: str, element: str) -> None:
             f"expected a file name ending in {', '.join(sorted({*SAVED, *FIELDS}))} for a fit, got "
             f"{path!r}"
         )
-    if _suffix(path) in FIELDS and find_element(element).degree != 2:
+    kind, suffix = find_element(element), _suffix(path)
+    if suffix in FIELDS and (kind.degree != 2 if suffix == ".vtu" else kind.power_form is None):
         raise ss.InputError(
-            f"expected a quadratic element for {_suffix(path)}, got {element}: save the fit as "
-            ".npz or .json"
+            f"expected another element for {suffix}, got {element}: save the fit as .npz or .json"
         )
 
 
