@@ -114,9 +114,10 @@ def _check_fit(path: str, element: str) -> None:
             f"{path!r}"
         )
     kind, suffix = find_element(element), _suffix(path)
-    if suffix in FIELDS and (kind.degree != 2 if suffix == ".vtu" else kind.power_form is None):
+    if suffix in FIELDS and suffix != ".vtu" and kind.power_form is None:
         raise ss.InputError(
-            f"expected another element for {suffix}, got {element}: save the fit as .npz or .json"
+            f"expected a quadratic or quartic element for {suffix}, got {element}: save the fit as "
+            ".npz or .json"
         )
 
 
