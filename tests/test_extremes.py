@@ -90,7 +90,7 @@ def test_polygons(corners: list[tuple[float, float]], smooth: bool, evenodd: boo
 
 
 @given(paths)
-@settings(max_examples=150)
+@settings(max_examples=100)
 def test_paths(path: str) -> None:
     ask(lambda: ss.Shape.from_svg_path(path))
 

@@ -80,9 +80,8 @@ def test_a_worker_that_is_killed_loses_nothing(
     address = client.scheduler.address
     again = ss.batch(shapes, "offset", output, distances=0.5, scheduler=address)
     assert len(again.kept) == len(shapes)
-    assert (
-        dask.config.get("scheduler", None) is None
-    )  # what else this program computes stays its own
+    # What else this program computes stays where it was.
+    assert dask.config.get("scheduler", None) is None
     client.wait_for_workers(2, timeout=60)
     assert victim not in pids(client)
 

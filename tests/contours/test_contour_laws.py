@@ -150,7 +150,7 @@ def test_length_and_area(home: Contour, way: complex) -> None:
     )
 
 
-@examples(100)
+@examples(50)
 @given(contours(), ways, tolerances)
 def test_circular_arcs(home: Contour, way: complex, share: float) -> None:
     moved = Moved(home, way, share)
@@ -174,7 +174,7 @@ def test_an_arc_on_its_own_way_back_has_circular_arcs() -> None:
     assert apart_from_conics(dense(result), home.arcs, home.weights).max() <= 2e-3
 
 
-@examples(150)
+@examples(100)
 @given(contours(), ways, tolerances, st.sampled_from(FORMATS), st.booleans())
 def test_files(home: Contour, way: complex, share: float, name: str, arcs: bool) -> None:
     moved = Moved(home, way, max(share, 1e-6) if name[2] in "gwc" else share)

@@ -176,8 +176,9 @@ def test_what_little_is_left_of_a_large_shape_is_asked_for(left: float) -> None:
     assert check_sides(shape, -5.0 - left, lines, 0.01 * left).wrong == 0
 
 
-@pytest.mark.parametrize("name", ["fingerprint", "rocket-takeoff", "umbrella-fill"])
-@pytest.mark.parametrize("share", [0.01, -0.01, 0.2])
+@pytest.mark.parametrize(
+    ("name", "share"), [("fingerprint", -0.01), ("rocket-takeoff", 0.01), ("umbrella-fill", 0.2)]
+)
 def test_icons_pass_and_each_loop_counts(name: str, share: float) -> None:
     shape = icons()[name]
     distance, tolerance = share * shape.size, 1e-5 * shape.size

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from numpy.testing import assert_allclose
 from shapely import contains_xy, from_wkt
 
@@ -124,6 +126,37 @@ def test_holes_are_holes_whichever_way_they_run(read: Read, turned: bool) -> Non
     )
     shape = read("a.wkt", f"SRID=4326;POLYGON ({lines})")
     assert np.sign(ss.signed_distance(shape, places)).tolist() == [1, 1, -1]
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_holes_take_away_what_they_share_with_the_outline(read: Read, seed: int) -> None:
+    """Wherever they stand: Shapely's difference decides, and a note tells of those outside."""
+    rng = np.random.default_rng(seed)
+    rings = [ring(0, 0, 9)]
+    for _ in range(int(rng.integers(1, 5))):
+        x, y, side = rng.uniform((-5, -5, 0.5), (11, 11, 6)).round(1).tolist()
+        rings.append(ring(x, y, side, turned=bool(rng.integers(2))))
+    outline, *holes = map(shapely.Polygon, rings)
+    left = outline.difference(shapely.union_all(holes))
+    drawn = functools.reduce(shapely.symmetric_difference, holes, outline)
+    polygon = {"type": "Polygon", "coordinates": rings}
+    lines = ", ".join("(" + ", ".join(f"{x} {y}" for x, y in r) + ")" for r in rings)
+    for name, text in (("a.geojson", json.dumps(polygon)), ("a.wkt", f"POLYGON ({lines})")):
+        shape = read(name, text)
+        assert shape.area == pytest.approx(left.area, rel=1e-12)
+        points = rng.uniform(-6, 18, (400, 2))
+        clear = shapely.distance(left.boundary, shapely.points(points)) > 1e-9
+        inside = ss.signed_distance(shape, points) < 0
+        assert np.array_equal(inside[clear], shapely.contains_xy(left, points)[clear])
+        noted = any("holes that are not within the outline" in note for note in shape.notes)
+        assert noted == (abs(drawn.area - left.area) > 1e-9)
+        assert ss.Shape.from_shapely(polygon).area == pytest.approx(left.area, rel=1e-12)
+
+
+def test_a_hole_as_large_as_its_outline_leaves_nothing(read: Read) -> None:
+    polygon = {"type": "Polygon", "coordinates": [ring(0, 0, 9), ring(-1, -1, 11)]}
+    with pytest.raises(ss.InputError, match="at least one closed curve, got none"):
+        read("a.geojson", json.dumps(polygon))
 
 
 def test_features_are_united_whatever_overlaps(read: Read) -> None:

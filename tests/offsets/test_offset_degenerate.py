@@ -92,7 +92,7 @@ def test_tangents_next_to_half_a_cusp_are_no_rounding(angle: float, reverse: boo
     assert np.abs(angles(one, other)).max() < 1e-9
 
 
-@pytest.mark.parametrize("share", [1e-3, -0.03, 0.3])
+@pytest.mark.parametrize("share", [1e-3, -0.03])
 def test_cusps_inside_pieces_of_a_formula(share: float) -> None:
     # Where the parameter starts decides where in a piece the cusps lie.
     shape = ss.Shape.from_formula("7.3 + cos(t + 0.3)^3", "1.1 + sin(t + 0.3)^3")

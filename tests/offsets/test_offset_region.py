@@ -31,8 +31,7 @@ def kinds(contours: list[Contour], d: float, *, sizes: float = 0.0) -> set[str]:
     return judge_region(washer(sizes), moved, d, TOLERANCE).kinds
 
 
-@pytest.mark.parametrize("sizes", [0.0, 1e3, 1e6])
-@pytest.mark.parametrize("d", [0.5, -0.5, 0.0])
+@pytest.mark.parametrize(("d", "sizes"), [(0.5, 0.0), (-0.5, 1e3), (0.0, 1e6)])
 def test_exact_rings_pass_and_faults_are_found(d: float, sizes: float) -> None:
     outer, inner = ring(d)
     assert kinds([outer, inner], d, sizes=sizes) == set()

@@ -32,16 +32,13 @@ CHOSEN = [
     ("mechanical", "flange", 0.03, 1e-6),
     ("mechanical", "flange", -0.1, 1e-4),
     ("mechanical", "slotted link", -0.1, 1e-5),
-    ("mechanical", "involute gear", 0.001, 1e-3),
     ("mechanical", "involute gear", 0.03, 1e-8),
-    ("mechanical", "involute gear", -0.003, 1e-6),
     ("mechanical", "airfoil rib", -0.01, 1e-6),
     ("mechanical", "cam", 0.1, 1e-7),
     ("mechanical", "star knob", 0.1, 1e-5),
     ("mechanical", "connecting rod", -0.03, 1e-5),
     ("mechanical", "sprocket", 0.03, 1e-6),
     ("mechanical", "T-slot profile", -0.01, 1e-8),
-    ("polygons", "iceland", -0.01, 1e-5),
     ("polygons", "chile", 0.003, 1e-4),
 ]
 

@@ -197,6 +197,9 @@ def test_what_cannot_be_cleared_is_said(monkeypatch: pytest.MonkeyPatch) -> None
         ss.pocket(square, 41.0, 10.0)
     with pytest.raises(ss.InputError, match="10,000 times at most"):
         ss.pocket(square, 6.0, 1e-3, tolerance=1e-4)
+    # Of the stepover that was given, not of the tolerance that would go with it.
+    with pytest.raises(ss.InputError, match="10,000 times at most, got 1e-12"):
+        ss.pocket(square, 6.0, 1e-12)
     # The ceiling ends it, in words.
     monkeypatch.setattr(module, "_ROUNDS", 1)
     with pytest.raises(ss.SplineSDFError, match="in 1 rounds, but something is left"):

@@ -15,7 +15,8 @@ import splinesdf as ss
 from splinesdf.errors import InputError
 from splinesdf.shapes.sources import dashes as dashes_module
 from splinesdf.shapes.sources.dashes import Dashed, Pattern, dashed, path_length
-from splinesdf.shapes.sources.stroke import Pen, stroke_region
+from splinesdf.shapes.sources.pen import Pen
+from splinesdf.shapes.sources.stroke import stroke_region
 from splinesdf.shapes.sources.svg_path import parse_until
 from tests.examples import examples
 from tests.shapes.test_boundary import area, loops

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 import splinesdf as ss
 from splinesdf.arclets.points import bezier_points
-from splinesdf.shapes.sources.stroke import Pen, stroke_region
+from splinesdf.shapes.sources.pen import Pen
+from splinesdf.shapes.sources.stroke import stroke_region
 from splinesdf.shapes.sources.svg_path import parse_path, parse_until
 from tests.drawings import judged
 from tests.reading import areas
@@ -52,10 +53,11 @@ def grid(shape: ss.Shape, across: int = 60) -> Floats:
     return np.asarray(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
 
 
-def followed(path: str, count: int = 4001) -> list[tuple[Floats, Floats]]:
-    """Points and derivatives along each piece."""
-    t = np.linspace(0.0, 1.0, count)
-    return [bezier_points(piece, t) for loop in parse_path(path) for piece in loop]
+def followed(path: str) -> list[tuple[Floats, Floats]]:
+    """Points and derivatives along each piece: four thousand in all, or more."""
+    pieces = [piece for loop in parse_path(path) for piece in loop]
+    t = np.linspace(0.0, 1.0, max(401, 4001 // len(pieces)))
+    return [bezier_points(piece, t) for piece in pieces]
 
 
 def swept(path: str, width: float, points: Floats) -> NDArray[np.bool_]:
@@ -134,6 +136,39 @@ def test_a_disk_far_away_or_small_is_one(scale: float, shift: float) -> None:
     np.testing.assert_allclose(distance / scale, [-4.0, -0.1], atol=1e-8)
 
 
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.97, 1.0 - 1e-6])
+@pytest.mark.parametrize("at", [(0.0, 0.0), (9.0, 13.0), (0.3, -1e4)])
+def test_a_circle_less_wide_than_the_stroke_is_a_disk(
+    share: float, at: tuple[float, float]
+) -> None:
+    """Its center is one point, of which rounding makes no cloud."""
+    x, y = at
+    found = parse_until(
+        f"M{x + share} {y}a{share} {share} 0 1 0 {-2 * share} 0a{share} {share} 0 1 0 {2 * share} 0"
+    )
+    for closed in (True, False):
+        around = stroke_region(found.loops, [closed], Pen(2.0, "butt"))
+        # Forty pieces a circle, four intervals each on both sides, and the lines to the center.
+        assert sum(map(len, around)) <= 40 * 4 * 2 + 80
+        shape = ss.Shape.from_pieces(around, once=False)
+        assert len(loops(shape.boundary)) == 1
+        assert math.isclose(area(shape.boundary), math.pi * (1.0 + share) ** 2, rel_tol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_an_arc_of_a_small_circle_sweeps(seed: int) -> None:
+    """Two sectors that touch in its center: one beside the arc, one across."""
+    rng = np.random.default_rng(seed)
+    x, y, radius, turn = rng.uniform((-20, -20, 0.1, 0.3), (20, 20, 0.9, 2.9)).tolist()
+    start = rng.uniform(0.0, 2.0 * math.pi)
+    ends = [radius * np.array([math.cos(a), math.sin(a)]) + (x, y) for a in (start, start + turn)]
+    (ax, ay), (bx, by) = (end.tolist() for end in ends)
+    shape = stroked(f"M{ax!r} {ay!r}A{radius!r} {radius!r} 0 0 1 {bx!r} {by!r}", Pen(2.0))
+    sectors = 0.5 * turn * ((1.0 + radius) ** 2 + (1.0 - radius) ** 2)
+    assert shape.area == pytest.approx(sectors, rel=1e-9)
+    assert len(loops(shape.boundary)) == 2
+
+
 def test_a_miter_beyond_its_limit_is_a_bevel() -> None:
     sharp = line([(0.0, 0.0), (10.0, 0.0), (0.0, 1.0)])
     assert stroked(sharp, Pen(1.0, miter_limit=30.0)).box[2] > 12.0
@@ -192,9 +227,15 @@ def test_icons_of_strokes_are_as_painted(path: Path) -> None:
     assert judged(path, 256, stroke="outline") == ""
 
 
-@pytest.mark.parametrize("name", ["feather/frown", "tabler-outline/laurel-wreath-1"])
-def test_handles_of_no_length_are_followed_to_their_ends(name: str) -> None:
-    assert judged(DATA / "drawings" / f"{name}.svg", 256, stroke="outline") == ""
+@pytest.mark.parametrize("d", ["M16 16s-1.5-2-4-2-4 2-4 2", "M14.5 21s-.682-3-2.5-3-2.5 3-2.5 3"])
+def test_handles_of_no_length_are_followed_to_their_ends(tmp_path: Path, d: str) -> None:
+    """A mouth of feather and a bow of tabler."""
+    pen = "fill='none' stroke='#000' stroke-width='2' stroke-linecap='round'"
+    text = (
+        f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 24 24'><path {pen} d='{d}'/></svg>"
+    )
+    (tmp_path / "bow.svg").write_text(text)
+    assert judged(tmp_path / "bow.svg", 256, stroke="outline") == ""
 
 
 @pytest.mark.parametrize("path", ["M0 0H50V2", "M0 0H50L49 2", "M0 0H50L30 1", "M50 2V0H0V3"])

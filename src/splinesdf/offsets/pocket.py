@@ -37,6 +37,8 @@ _OF_SIZE, _OF_STEP = 1e-3, 2e-3
 # within one tolerance and may miss parts that are no wider. Larger: large stepovers are refused;
 # smaller: a part that is left may be missed.
 _LEFT, _CLEARED = 2.0, 4.0
+# Rings within each other, of a shape as wide as its box. More: hours, and memory without end.
+_MOST_RINGS = 10_000
 # Rounds of clearing. One does, but for rounding.
 _ROUNDS = 8
 # Stretches of an arc between points at which the distance of a path is taken.
@@ -161,6 +163,13 @@ def cleared(
     progress: Report | None = None,
 ) -> Pocket:
     """`pocket` by the radius; paths in a file may be off by the slack beside the tolerance."""
+    xmin, ymin, xmax, ymax = shape.box
+    times = 0.5 * min(xmax - xmin, ymax - ymin) / step
+    if times > _MOST_RINGS:
+        raise InputError(
+            f"expected a stepover that is taken {_MOST_RINGS:,} times at most, got {step:g}, which "
+            f"may be taken {times:.3g} times: give a longer one"
+        )
     # The paths that clear what is left lie at less than the radius by some tolerances, and must
     # lie farther off than where two rings meet halfway, within their own tolerances.
     beyond = radius - slack - _LEFT * tolerance
@@ -200,13 +209,6 @@ def _rings(
     """The offsets at radius + step, radius + 2 step, ... inward until nothing is left."""
     result: list[Contour] = []
     number = 1
-    xmin, ymin, xmax, ymax = shape.box
-    most = 0.5 * min(xmax - xmin, ymax - ymin) / step
-    if most > 10_000:
-        raise InputError(
-            f"expected a stepover that is taken 10,000 times at most, got {step:g}, which may be "
-            f"taken {most:,.0f} times: give a longer one"
-        )
     while found := offset(shape, -(radius + number * step), tolerance=tolerance, coarse=True):
         result += found
         tell(progress, f"ring {number}, {len(found)} paths", number)

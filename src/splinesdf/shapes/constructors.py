@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from splinesdf.contours.contour import Contour
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import as_points, finite, positive, shown
-from splinesdf.shapes.region import difference, region, union
+from splinesdf.shapes.region import difference, region, union, united_regions
 from splinesdf.shapes.sources.compiled import compile_arc, compile_curve, point_loops
 from splinesdf.shapes.sources.compiled import polygon as polygon_of
 from splinesdf.shapes.sources.conics import contour_loops
@@ -207,7 +207,8 @@ def from_shapely(cls: type[Shape], geometry: object, *, name: str = "") -> Shape
     <Shape: 2 loops, 8 pieces, evenodd>
     """
     found = polygons_of(geometry)
-    (loops, fill), notes = found.united(None), found.notes()
+    regions, notes = found.filled(None)
+    loops, fill = united_regions([(one.loops, one.rule) for one in regions])
     return cls.from_pieces(loops, fill=fill, close=True, name=name, notes=notes, once=False)
 
 

@@ -34,11 +34,8 @@ def geojson_reading(source: Source, options: Options) -> Reading:
 
 def _reading(found: Polygons, source: Source, options: Options, *, degrees: bool) -> Reading:
     """Polygons, and notes on what else there is."""
-    if not found.rings:
-        raise InputError(found.nothing())
-    rule = options.fill or "evenodd"
-    parts = [Part(k, loops, rule) for k, loops in zip(found.owner, found.polygons(), strict=True)]
-    notes = found.notes()
+    regions, notes = found.filled(options.fill)
+    parts = [Part(k, one.loops, one.rule) for k, one in zip(found.owner, regions, strict=True)]
     corners = np.concatenate([ring for rings in found.rings for ring in rings])
     if degrees and np.all(np.abs(corners) <= [180.0, 90.0]):
         notes += (

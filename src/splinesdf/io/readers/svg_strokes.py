@@ -15,7 +15,8 @@ from splinesdf.io.readers.svg_transform import mapped
 from splinesdf.io.readers.svg_walk import Document
 from splinesdf.shapes.region import Loops, region
 from splinesdf.shapes.sources.dashes import dashed
-from splinesdf.shapes.sources.stroke import Pen, stroke_region
+from splinesdf.shapes.sources.pen import Pen
+from splinesdf.shapes.sources.stroke import stroke_region
 
 
 def stroked(drawn: Drawn, document: Document) -> Loops:

@@ -11,10 +11,11 @@ import numpy as np
 
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
+from splinesdf.ground.brief import counted
 from splinesdf.ground.limits import check_limit
 from splinesdf.shapes.loops import check_count
-from splinesdf.shapes.region import Loops, united_regions
 from splinesdf.shapes.sources.compiled import polygon
+from splinesdf.shapes.sources.holes import Filled, less_holes
 
 TYPES = frozenset(
     ("FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
@@ -32,23 +33,19 @@ class Polygons(NamedTuple):
     elements: list[str]  # names of features and of geometries outside of these
     owner: list[int]  # of each polygon: which of the elements it is of
 
-    def notes(self) -> tuple[str, ...]:
-        """One line for each kind of thing that a shape cannot hold."""
-        notes = []
-        if self.left_out:
-            words = ", ".join(f"{count} {name}" for name, count in self.left_out.items())
-            notes.append(f"left out: {words}")
-        if self.has_z:
-            notes.append("left out: the third coordinate of points")
-        return tuple(notes)
-
     def nothing(self) -> str:
         """What is said if there is no polygon."""
         words = ", ".join(f"{count} {name}" for name, count in self.left_out.items())
         return f"expected polygons, got {words or 'none'}"
 
-    def united(self, fill: str | None) -> tuple[Loops, str]:
-        """Loops around the union of all, and their rule. Holes are so by where they stand.
+    def filled(self, fill: str | None) -> tuple[list[Filled], tuple[str, ...]]:
+        """What each polygon fills, and one line for each kind of thing that is not as expected.
+
+        Parameters
+        ----------
+        fill : {"nonzero", "evenodd"}, optional
+            The rule for the rings of a polygon, whichever is the outline; otherwise each is its
+            outline less its holes.
 
         Raises
         ------
@@ -57,11 +54,24 @@ class Polygons(NamedTuple):
         """
         if not self.rings:
             raise InputError(self.nothing())
-        return united_regions([(loops, fill or "evenodd") for loops in self.polygons()])
-
-    def polygons(self) -> list[Loops]:
-        """The loops of each polygon, its outline first."""
-        return [[polygon(ring) for ring in rings] for rings in self.rings]
+        polygons = [[polygon(ring) for ring in rings] for rings in self.rings]
+        if fill is not None:
+            result = [Filled(rings, fill, nested=True) for rings in polygons]
+        else:
+            result = [less_holes(rings) for rings in polygons]
+        notes = []
+        if self.left_out:
+            words = ", ".join(f"{count} {name}" for name, count in self.left_out.items())
+            notes.append(f"left out: {words}")
+        if self.has_z:
+            notes.append("left out: the third coordinate of points")
+        apart = sum(not region.nested for region in result)
+        if apart:
+            notes.append(
+                f"{counted(apart, 'polygon')} with holes that are not within the outline, or over "
+                'each other: filled is the outline less the holes (fill="evenodd": in turns)'
+            )
+        return result, tuple(notes)
 
 
 def nothing_found() -> Polygons:

@@ -5,8 +5,9 @@ path ──cut at corners and where it bends more than the width──> strips �
 
 A strip is what a segment across the path sweeps. Where the path bends less than half the width its
 border is that of the two parallels; where it bends more, the inner half turns over at the center of
-curvature, and both sides of that are strips of their own. Each is filled by itself, so that nothing
-cancels. Parallels are compiled to pieces that agree with them to a few units in the last place.
+curvature, and both sides of that are strips of their own (sectors, along an arc). Each is filled
+by itself, so that nothing cancels. Parallels are compiled to pieces that agree with them to a few
+units in the last place.
 """
 
 from __future__ import annotations
@@ -24,16 +25,17 @@ from splinesdf.arclets.points import bezier_points
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Bools, Floats
 from splinesdf.shapes.region import Loops, region
-from splinesdf.shapes.sources.compiled import compile_arc, compile_curve
+from splinesdf.shapes.sources.compiled import compile_curve
+from splinesdf.shapes.sources.pen import Pen, cap, dot, join, turn_between
 from splinesdf.shapes.sources.straight import powers, straightened
 
 # Turns of less (radians) are none: compiled pieces and printed digits turn by less.
 _SMOOTH = 1e-6
 # Roots this near to the real line are on it, where a path bends just as much as the width.
 _REAL = 1e-6
-# A piece is an arc of half the width's radius if it bends by that up to this share. Smaller: where
-# a circle is as wide as the stroke, rounding cuts it into hundreds of stretches; larger: what is
-# open in the middle is closed.
+# A piece is an arc, of half the width's radius or less, if it bends by the same up to this share.
+# Smaller: rounding cuts a circle as wide as the stroke into hundreds of stretches, and hundreds of
+# pieces follow what it makes of the center; larger: what is open in the middle is closed.
 _ROUND = 1e-7
 # Of the largest coordinate: how far rounding moves second derivatives of pieces of degree 7; and
 # how much of it is let pass. Smaller: far from the origin a circle as wide as the stroke is cut
@@ -49,15 +51,6 @@ _LOOSER = (1.0, 1e2, 1e4)
 _SAME = 1e-13
 # Stretches of a piece shorter than this (of its parameter) are left out: rounding made them.
 _SHORT = 1e-9
-
-
-class Pen(NamedTuple):
-    """How a stroke is drawn."""
-
-    width: float
-    cap: str = "butt"  # butt, round, square
-    join: str = "miter"  # miter, round, bevel
-    miter_limit: float = 4.0
 
 
 @dataclass(frozen=True)
@@ -108,7 +101,7 @@ def stroke_region(
         if pieces:
             result += _stroked(pieces, is_closed, pen)
         elif len(loop) and pen.cap != "butt":
-            result += _dot(loop[0][0], np.array([1.0, 0.0]) if along is None else along[k], pen)
+            result += dot(loop[0][0], np.array([1.0, 0.0]) if along is None else along[k], pen)
     return result
 
 
@@ -125,15 +118,15 @@ def _stroked(pieces: list[Floats], closed: bool, pen: Pen) -> Loops:
     corners = [
         k
         for k in range(len(pieces) if closed else len(pieces) - 1)
-        if abs(_turn(ends[k][1], ends[(k + 1) % len(pieces)][0])) > _SMOOTH
+        if abs(turn_between(ends[k][1], ends[(k + 1) % len(pieces)][0])) > _SMOOTH
     ]
     for k in corners:
         following = ends[(k + 1) % len(pieces)][0]
         how = pen._replace(join="round") if k in turns else pen
-        result += _join(pieces[k][-1], ends[k][1], following, half, how)
+        result += join(pieces[k][-1], ends[k][1], following, half, how)
     if not closed:
-        result += _cap(pieces[0][0], -ends[0][0], half, pen)
-        result += _cap(pieces[-1][-1], ends[-1][1], half, pen)
+        result += cap(pieces[0][0], -ends[0][0], half, pen)
+        result += cap(pieces[-1][-1], ends[-1][1], half, pen)
     for run in _runs(pieces, set(corners), half, closed):
         result += _band(run, half)
     return result
@@ -142,14 +135,15 @@ def _stroked(pieces: list[Floats], closed: bool, pen: Pen) -> Loops:
 class _Stretch(NamedTuple):
     """A part of a piece, and how it bends throughout.
 
-    ``gentle``: less than the half width; ``tight``: more; ``left``, ``right``: just as much, to
-    that side, so that it is an arc about one center.
+    ``gentle``: less than the half width; ``tight``: more; ``left``, ``right``: no less, to that
+    side, and all of it an arc of this radius about one center.
     """
 
     piece: Floats
     low: float
     high: float
     bend: str
+    radius: float = 0.0
 
 
 def _runs(
@@ -173,15 +167,17 @@ def _runs(
 
 
 def _together(one: _Stretch, following: _Stretch) -> bool:
-    return one.bend == following.bend != "tight"
+    same = abs(one.radius - following.radius) <= _ROUND * one.radius
+    return one.bend == following.bend != "tight" and same
 
 
 def _stretches(piece: Floats, half: float) -> list[_Stretch]:
     if len(piece) == 2:
         return [_Stretch(piece, 0.0, 1.0, "gentle")]
-    if _is_round(piece, half):
-        side = _turn(end_tangent(piece, 0), end_tangent(piece, 1))
-        return [_Stretch(piece, 0.0, 1.0, "left" if side > 0.0 else "right")]
+    radius = _radius(piece, half)
+    if radius is not None:
+        side = turn_between(end_tangent(piece, 0), end_tangent(piece, 1))
+        return [_Stretch(piece, 0.0, 1.0, "left" if side > 0.0 else "right", radius)]
     result = []
     for low, high in pairwise(_turning_over(piece, half)):
         if high - low < _SHORT:
@@ -210,33 +206,48 @@ def _band(run: list[_Stretch], half: float) -> Loops:
         inner = math.copysign(half, turn)
         pairs: list[tuple[float | None, float | None]] = [(0.0, -inner), (0.0, None), (None, inner)]
         return [loop for one, other in pairs for loop in _between(run, one, other)]
-    return _sector(run, -half if bend == "left" else half)
+    outer = -half if bend == "left" else half
+    loops = _sector(run, outer)
+    # What lies across the center: where an arc is as round as the stroke that is the center.
+    return loops if run[0].radius == half else loops + _sector(run, -outer)
 
 
-def _is_round(piece: Floats, half: float) -> bool:
-    """Whether it bends by half the width throughout: an arc whose inner parallel is a point."""
+def _radius(piece: Floats, half: float) -> float | None:
+    """The radius of an arc that is no wider than the stroke; half the width if that is it."""
     t = np.linspace(0.0, 1.0, 17)
     _, first, second, still = _derivatives(piece, t)
     if still.any():
-        return False
-    share = np.abs(_cross(piece, t, first, second)) * half / np.hypot(first[:, 0], first[:, 1]) ** 3
+        return None
+    bend = np.abs(_cross(piece, t, first, second)) / np.hypot(first[:, 0], first[:, 1]) ** 3
     # What rounding of the coordinates does to the second derivative, beside that of the piece.
     length = float(np.ptp(piece, axis=0).max())
-    rounding = _ROUNDED * float(np.abs(piece).max()) * half / length**2
-    return bool(np.all(np.abs(share - 1.0) <= _ROUND + min(rounding, _MOST_ROUNDED)))
+
+    def is_arc(radius: float) -> bool:
+        rounding = _ROUNDED * float(np.abs(piece).max()) * radius / length**2
+        same = np.abs(bend * radius - 1.0) <= _ROUND + min(rounding, _MOST_ROUNDED)
+        return bool(np.all(same))
+
+    if is_arc(half):
+        return half
+    turn = abs(turn_between(end_tangent(piece, 0), end_tangent(piece, 1)))
+    if turn <= _SMOOTH:
+        return None
+    radius = math.hypot(*(piece[-1] - piece[0])) / (2.0 * math.sin(0.5 * turn))
+    return radius if radius < half and is_arc(radius) else None
 
 
-def _sector(run: list[_Stretch], outer: float) -> Loops:
-    """What lies between the outer parallel of such arcs and their center."""
-    side = [part for piece, low, high, _ in run for part in _beside(piece, low, high, outer)]
+def _sector(run: list[_Stretch], offset: float) -> Loops:
+    """What lies between a parallel of such arcs and their center."""
+    side = [part for piece, low, high, *_ in run for part in _beside(piece, low, high, offset)]
     if _is_loop(run):
         return region([side], "nonzero")
     # By first derivatives alone, so that bands before and after have their corners there as well:
     # what second ones of compiled arcs know is farther off than what counts as touching.
-    spots = [run[0].piece[0] - outer * _left_of(run[0].piece, 0)]
-    spots += [stretch.piece[-1] - outer * _left_of(stretch.piece, 1) for stretch in run]
+    radius = run[0].radius if run[0].bend == "left" else -run[0].radius
+    spots = [run[0].piece[0] + radius * _left_of(run[0].piece, 0)]
+    spots += [stretch.piece[-1] + radius * _left_of(stretch.piece, 1) for stretch in run]
     way = [side[-1][-1], spots[-1]]
-    way += [spot for spot in spots[-2::-1] if np.abs(spot - way[-1]).max() > _SAME * abs(outer)]
+    way += [spot for spot in spots[-2::-1] if np.abs(spot - way[-1]).max() > _SAME * abs(radius)]
     lines = [np.array(pair) for pair in pairwise([*way, side[0][0]])]
     return region([[*side, *lines]], "nonzero")
 
@@ -253,7 +264,7 @@ def _is_loop(run: list[_Stretch]) -> bool:
         return False
     if not np.array_equal(first.piece[0], last.piece[-1]):
         return False
-    return abs(_turn(end_tangent(last.piece, 1), end_tangent(first.piece, 0))) <= _SMOOTH
+    return abs(turn_between(end_tangent(last.piece, 1), end_tangent(first.piece, 0))) <= _SMOOTH
 
 
 def _between(run: list[_Stretch], one: float | None, other: float | None) -> Loops:
@@ -261,7 +272,7 @@ def _between(run: list[_Stretch], one: float | None, other: float | None) -> Loo
     sides = []
     for offset in (one, other):
         side: list[Floats] = []
-        for piece, low, high, _ in run:
+        for piece, low, high, *_ in run:
             side += _beside(piece, low, high, offset)
         sides.append(side)
     back = [part[::-1] for part in reversed(sides[1])]
@@ -318,10 +329,6 @@ def end_tangent(piece: Floats, end: int) -> Floats:
     return np.asarray(step / math.hypot(*step))
 
 
-def _turn(one: Floats, other: Floats) -> float:
-    return math.atan2(one[0] * other[1] - one[1] * other[0], float(one @ other))
-
-
 def _turning_over(piece: Floats, half: float) -> list[float]:
     """Parameters between which the piece bends less than half the width everywhere, or more."""
     x, y = (powers(piece[:, axis]) for axis in (0, 1))
@@ -333,58 +340,3 @@ def _turning_over(piece: Floats, half: float) -> list[float]:
     roots = np.roots(np.polysub(cubed, half * half * np.polymul(bend, bend)))
     real = roots.real[(np.abs(roots.imag) < _REAL) & (roots.real > 0.0) & (roots.real < 1.0)]
     return [0.0, *np.sort(real).tolist(), 1.0]
-
-
-def _join(at: Floats, before: Floats, after: Floats, half: float, pen: Pen) -> Loops:
-    """What is added where a path turns, on the outer side."""
-    turn = _turn(before, after)
-    side = -math.copysign(half, turn)
-    if pen.join == "round":
-        return _fan(at, side * np.array([-before[1], before[0]]), turn)
-    one = at + side * np.array([-before[1], before[0]])
-    other = at + side * np.array([-after[1], after[0]])
-    corners = [at, one, other]
-    # The miter is 1 / sin of half the angle between the pieces, in widths.
-    sine = math.cos(0.5 * turn)
-    if pen.join != "bevel" and sine > 0.0 and pen.miter_limit * sine >= 1.0:
-        middle = 0.5 * (one + other) - at
-        tip = at + middle * (half * half / float(middle @ middle))
-        corners = [at, one, tip, other]
-    return region([_polygon(corners)], "nonzero")
-
-
-def _cap(at: Floats, outward: Floats, half: float, pen: Pen) -> Loops:
-    normal = half * np.array([-outward[1], outward[0]])
-    if pen.cap == "round":
-        return _fan(at, -normal, math.pi)
-    if pen.cap != "square":
-        return []
-    far = at + half * outward
-    return [_polygon([at - normal, far - normal, far + normal, at + normal])]
-
-
-def _dot(at: Floats, along: Floats, pen: Pen) -> Loops:
-    """A path of no length: its caps."""
-    half = 0.5 * pen.width
-    if pen.cap == "round":
-        return _disk(at, half)
-    ahead, left = half * along, half * np.array([-along[1], along[0]])
-    return [_polygon([at - ahead - left, at + ahead - left, at + ahead + left, at - ahead + left])]
-
-
-def _fan(at: Floats, spoke: Floats, turn: float) -> Loops:
-    """A sector of a disk, from a spoke on.
-
-    No more of the disk: that would be seen beyond the butt end of a short piece.
-    """
-    arc = compile_arc(at, spoke, np.array([-spoke[1], spoke[0]]), 0.0, turn)
-    lines = [np.array([arc[-1][-1], at]), np.array([at, arc[0][0]])]
-    return region([[*arc, *lines]], "nonzero")
-
-
-def _disk(at: Floats, radius: float) -> Loops:
-    return [compile_arc(at, (radius, 0.0), (0.0, radius), 0.0, 2.0 * math.pi)]
-
-
-def _polygon(corners: Sequence[Floats]) -> list[Floats]:
-    return [np.array(pair) for pair in zip(corners, [*corners[1:], corners[0]], strict=True)]
