@@ -44,10 +44,13 @@ def spline(name: str) -> ss.SplineSDF:
         return tree(0.0)
     if name == "far":
         return tree(1e6)
+    if name == "far grid":
+        mesh = Grid.uniform((1e6 - 1.5, 1e6 - 0.3, 1e6 + 5.4, 1e6 + 3.1), 6, 5)
+        return quasi_interpolate(lambda p: waves(p - 1e6), mesh, None, ELEMENTS["cubic"])
     return quasi_interpolate(waves, Grid.uniform((0.0, -1.0, 1.0, 1.0), 5, 4), None, ELEMENTS[name])
 
 
-@pytest.mark.parametrize("name", ["tree", "far", "cubic", "S31", "M222", "M1122"])
+@pytest.mark.parametrize("name", ["tree", "far", "far grid", "cubic", "S31", "M222", "M1122"])
 def test_nodes_are_in_order_once_each_and_make_the_function(name: str) -> None:
     own = spline(name)
     mesh, degree = own.triangles(), own.element.degree
@@ -61,6 +64,8 @@ def test_nodes_are_in_order_once_each_and_make_the_function(name: str) -> None:
     assert len(np.unique(mesh.points, axis=0)) == len(mesh.points)
     assert np.array_equal(np.unique(mesh.triangles), np.arange(len(mesh.points)))
     check_tiling(mesh, own)
+    # None is beyond the border.
+    assert np.abs(own(mesh.points, outside="nan") - mesh.values).max() <= 1e-12 + 10.0 * rounding
     # By solving for the polynomial that has the values at the nodes.
     powers = [(a, b) for a in range(degree + 1) for b in range(degree + 1 - a)]
     terms = np.stack([share[:, 0] ** a * share[:, 1] ** b for a, b in powers], axis=1)

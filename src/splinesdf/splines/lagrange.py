@@ -51,7 +51,10 @@ def lagrange_nodes(
     number = _numbers(degree, fans)
     count = int(number.max()) + 1
     points, values = np.empty((count, 2)), np.empty(count)
-    points[number] = np.einsum("nk,pkx->pnx", local, fans.points[fans.corners])
+    # By steps from the first corner: what lies on the domain's border does so to the last bit.
+    first, *others = np.moveaxis(fans.points[fans.corners], 1, 0)
+    steps = np.stack([corner - first for corner in others], axis=1)
+    points[number] = first[:, None] + np.einsum("nk,pkx->pnx", local[:, 1:], steps)
     points[: len(fans.points)] = fans.points
     values[number] = found
     return points, number, values, float(np.max(np.abs(found - values[number])))
