@@ -121,7 +121,6 @@ CASES = [
     ("cubic", "uniform", None, 0.04),
     ("cubic", "uniform", (-0.1, 0.05), 1e-3),
     ("S31", "uniform", (-0.01, 0.01), 1e-4),
-    ("M222", "uniform", (0.01, 0.02), 1e-4),
     ("M1122", "uniform", (0.01, 0.02), 1e-4),
     ("quartic", "uniform", (0.01, 0.02), 1e-4),
     ("quartic", "hierarchical", None, 0.04),
