@@ -20,6 +20,7 @@ import numpy as np
 from PIL import Image
 
 import splinesdf as ss
+from splinesdf.io.recarved import carved_depth
 from splinesdf.plot import (
     INK,
     INSIDE,
@@ -143,6 +144,29 @@ def pocket() -> None:
     save(figure, "pocket.png")
 
 
+def vcarve() -> None:
+    names = names_of("vcarve")
+    carve = names["carve"]
+    xmin, ymin, xmax, ymax = names["letter"].box
+    x, y = np.linspace(xmin - 2, xmax + 2, 900), np.linspace(ymin - 2, ymax + 2, 900)
+    points = np.stack(np.meshgrid(x, y), axis=-1)
+    cuts = np.concatenate([np.stack([path[:-1], path[1:]], axis=1) for path in carve.paths])
+    z = -carved_depth(cuts, points.reshape(-1, 2), carve).reshape(points.shape[:2])
+    figure = new_figure(7.0, 6.0)
+    ax = figure.add_subplot()
+    drawn = ax.contourf(x, y, z, levels=np.linspace(-4.0, 0.0, 17), cmap="bone")
+    figure.colorbar(drawn, ax=ax, label="z of the surface (mm)", ticks=range(-4, 1))
+    ground = ss.signed_distance(names["ground"], points)
+    ax.contourf(x, y, ground, levels=[-99.0, 0.0], colors=["#f2a679"])
+    for path in carve.paths:
+        ax.plot(*path[:, :2].T, color=OUTSIDE, lw=0.7)
+    ax.set_aspect("equal")
+    ax.set_xlabel("x (mm)")
+    ax.set_ylabel("y (mm)")
+    ax.set_title("gray: how deep; line: the bit's tip; orange: flat, for another tool", fontsize=9)
+    save(figure, "vcarve.png")
+
+
 def check_offset() -> None:
     names = names_of("check_offset")
     points, off, allowed = names["points"], names["off"], names["allowed"]
@@ -255,7 +279,7 @@ def textures() -> None:
 
 
 MADE: tuple[Callable[[], None], ...] = (
-    *(part, explorer, explored, gcode, pocket, check_offset),
+    *(part, explorer, explored, gcode, pocket, vcarve, check_offset),
     *(reinitialise, flow_solver, unfitted_fem, textures),
 )
 

@@ -57,6 +57,10 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("feed", "safe_height", "depth", "distance", "width", "height"), "number"),
     **dict.fromkeys(
         (
+            "angle",
+            "step_down",
+            "tip",
+            "allowance",
             "tool_diameter",
             "stepover",
             "ramp",

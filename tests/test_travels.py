@@ -145,6 +145,7 @@ def examples() -> dict[type, Any]:
         dataclasses.replace(ss.atlas({"limaçon": shape}, size=8), kerning=(Kern("A", "V", -0.1),)),
         ss.offset(shape, [-0.02, 0.1], tolerance=1e-4),
         ss.pocket(shape, 0.1, 0.05, tolerance=1e-3),
+        ss.vcarve(shape, 60.0, 0.1, tolerance=1e-2),
         Cleared(100, -0.1, (1.0, 2.0)),
         ss.Milling(feed=100.0),
         MACHINES["grbl"],

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from splinesdf.batches.batch import BatchReport, batch
     from splinesdf.batches.item import BatchRow
     from splinesdf.contours.biarcs import as_arcs
+    from splinesdf.contours.carve import Carve
     from splinesdf.contours.contour import Contour
     from splinesdf.distance.exact import (
         Projection,
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from splinesdf.meshes.lattice import DistanceGrid
     from splinesdf.offsets.offset import offset
     from splinesdf.offsets.pocket import Pocket, pocket
+    from splinesdf.offsets.vcarve import vcarve
     from splinesdf.rasters.atlas import atlas
     from splinesdf.rasters.layout import Atlas
     from splinesdf.rasters.texture import Texture, texture
@@ -63,6 +65,7 @@ __all__ = [
     "AxisIncomplete",
     "BatchReport",
     "BatchRow",
+    "Carve",
     "Contour",
     "DistanceGrid",
     "FitResult",
@@ -106,6 +109,7 @@ __all__ = [
     "signed_distance_grid",
     "texture",
     "thickness",
+    "vcarve",
     "write",
 ]
 
@@ -118,6 +122,7 @@ _MODULES = {
     ),
     "batches.item": ("BatchRow",),
     "contours.biarcs": ("as_arcs",),
+    "contours.carve": ("Carve",),
     "contours.contour": ("Contour",),
     "distance.exact": (
         "Projection",
@@ -165,6 +170,7 @@ _MODULES = {
         "Pocket",
         "pocket",
     ),
+    "offsets.vcarve": ("vcarve",),
     "rasters.atlas": ("atlas",),
     "rasters.layout": ("Atlas",),
     "rasters.texture": (

@@ -27,6 +27,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "atlas": ("drawings", "-o", "b.png"),
     "axis": ("square.csv", "-o", "c.svg"),
     "thickness": ("square.csv", "--side", "outside"),
+    "vcarve": ("square.csv", "-o", "d.nc", "--check"),
     "view": ("square.csv", "--tolerance", "0.1", "--html", "a.html"),
 }
 

@@ -31,6 +31,7 @@ from splinesdf.cli.paper import paper
 from splinesdf.cli.query import query
 from splinesdf.cli.texture import texture
 from splinesdf.cli.thickness import thickness
+from splinesdf.cli.vcarve import vcarve
 from splinesdf.cli.view import view
 
 
@@ -89,6 +90,6 @@ def commands() -> None:
     """
 
 
-_SHAPES = (fit, offset, axis, thickness, query, batch)
+_SHAPES = (fit, offset, vcarve, axis, thickness, query, batch)
 for _command in (*_SHAPES, texture, atlas, view, paper, info, demo, completion):
     commands.add_command(_command)

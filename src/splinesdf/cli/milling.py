@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import reduce
 from typing import Any
 
@@ -53,20 +53,20 @@ _SAID = {
 }
 
 
-def milling_options(command: Command) -> Command:
-    """All options of G-code."""
+def milling_options(command: Command, names: Iterable[str] = _OPTIONS) -> Command:
+    """The options of G-code, all unless some are named."""
 
     def with_one(made: Command, name: str) -> Command:
         told = dict(_OPTIONS[name])
         told["help"] = f"G-code: {told['help']}"
         return click.option("--" + name.replace("_", "-"), **told)(made)
 
-    return reduce(with_one, reversed(_OPTIONS), command)
+    return reduce(with_one, reversed(list(names)), command)
 
 
 def milling_of(flags: Mapping[str, Any]) -> ss.Milling | None:
     """The options as `Milling`, None if none is given."""
-    given = {name: flags[name] for name in _OPTIONS if flags[name] is not None}
+    given = {name: flags[name] for name in _OPTIONS if flags.get(name) is not None}
     return ss.Milling(**given) if given else None
 
 

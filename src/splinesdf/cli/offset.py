@@ -13,6 +13,7 @@ from splinesdf.cli import report
 from splinesdf.cli.console import answer, answering, note, working
 from splinesdf.cli.milling import about_feed, about_text, milling_of, milling_options
 from splinesdf.cli.pipes import OUTPUT
+from splinesdf.cli.placing import about_units, placing_of, placing_options
 from splinesdf.cli.pocket import check_tool, clear, proved
 from splinesdf.cli.shapes import (
     check_outputs,
@@ -26,10 +27,9 @@ from splinesdf.distance.depth import deepest
 from splinesdf.ground.atomic import write_text
 from splinesdf.io.enclosed import check_sides
 from splinesdf.io.output import check_format, file_text
-from splinesdf.io.placing import CORNERS
 from splinesdf.io.remeasured import Worst, measure_file
 from splinesdf.io.source_frame import Told
-from splinesdf.io.writers.options import GCODE, UNITS, Y_UP, factor, is_used
+from splinesdf.io.writers.options import GCODE, is_used
 from splinesdf.offsets.offset import least_tolerance
 
 # Shares of the tolerance for the offset; the file gets the rest. DXF without --arcs is exact; in
@@ -55,12 +55,7 @@ _EXACT, _MOSTLY, _LITTLE = 1.0, 0.875, 0.125
     help=".dxf .svg .nc .ngc .gcode .geojson .wkt .csv; again for another file.",
 )
 @click.option("--arcs", is_flag=True, help="DXF, SVG: only lines and circular arcs.")
-@click.option(
-    "--units", type=click.Choice(UNITS), help="DXF, G-code: what the numbers are. [G-code: mm]"
-)
-@click.option("--scale", type=float, default=1.0, help="Enlarge the numbers of the files.")
-@click.option("--origin", help="What becomes 0,0: lower-left, center, or a point X,Y of SHAPE.")
-@click.option("--flip/--no-flip", default=None, help="Mirror y, or not.  [as the file's axis asks]")
+@placing_options
 @milling_options
 @click.option(
     "--check",
@@ -93,11 +88,8 @@ def offset(
     source = read_shape(shape, reading)
     options: dict[str, Any] = {
         "arcs": flags["arcs"],
-        "units": flags["units"],
         "milling": milling_of(flags),
-        "scale": flags["scale"],
-        "origin": _origin(flags["origin"]),
-        "flip": flags["flip"],
+        **placing_of(flags),
     }
     files = _files(shape, outputs, options)
     asked = (step,) if step is not None else distances or (-0.5 * tool, -stepover)
@@ -128,7 +120,7 @@ def offset(
     leveled = contours if paths is None else [*paths.wall, *paths.rings]
     distances = distances or tuple(dict.fromkeys(c.distance for c in leveled))
     figures = report.offset_figures(source, contours, distances)
-    notes = [_about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
+    notes = [about_units(source, suffix, flags["units"]) for suffix in map(_suffix, files)]
     if any(suffix in GCODE for suffix in map(_suffix, files)):
         notes.append(about_feed(options["milling"], flags["units"]))
         notes += about_text("".join(text for name, text in texts.items() if _suffix(name) in GCODE))
@@ -176,18 +168,6 @@ def _check_asked(distances: tuple[float, ...], step: float | None, tool: float |
             "expected either --distance (-d) or --step, or a --tool-diameter with a --stepover, "
             f"got {got}: give one"
         )
-
-
-def _origin(text: str | None) -> str | tuple[float, ...] | None:
-    """The origin as `write` takes it."""
-    if text is None or text in CORNERS:
-        return text
-    try:
-        return tuple(map(float, text.split(",")))
-    except ValueError as error:
-        raise ss.InputError(
-            f"expected --origin as {', '.join(CORNERS)} or X,Y, got {text!r:.60}"
-        ) from error
 
 
 def _files(
@@ -283,21 +263,6 @@ def _keeps(off: float, tolerance: float) -> bool:
             "try another tolerance, or move the shape nearer to the origin"
         )
     return off <= tolerance
-
-
-def _about_units(source: ss.Shape, suffix: str, units: str | None) -> str | None:
-    """Say by how much the numbers of the file are larger, or that their unit is not known."""
-    if suffix not in Y_UP:
-        return None
-    if source.unit is not None:
-        by = factor(suffix, source.unit, units)
-        return None if by == 1.0 else f"converted to {units or 'mm'}: {by:.9g} a unit"
-    if units is None and suffix == ".dxf":
-        return None
-    return (
-        f"{source.name} does not say its unit: its numbers are written as they are, in "
-        f"{units or 'mm'}"
-    )
 
 
 def _measured(

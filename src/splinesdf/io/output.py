@@ -8,12 +8,14 @@ from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
+from splinesdf.contours.carve import Carve
 from splinesdf.contours.contour import Contour, box, check_tolerance, smallest_tolerance
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import positive
 from splinesdf.ground.atomic import write_text
 from splinesdf.ground.options import check_known, with_options
 from splinesdf.ground.paths import as_path
+from splinesdf.io.carved import carved_text
 from splinesdf.io.fields import FIELDS, write_field
 from splinesdf.io.placing import Placement, placed
 from splinesdf.io.writers import WRITERS
@@ -58,7 +60,7 @@ write_options = with_options(WriteOptions, DEFAULTS)
 @write_options
 def write(
     path: str | os.PathLike[str],
-    contours: Iterable[Contour] | Contour | Shape | SplineSDF,
+    contours: Iterable[Contour] | Contour | Shape | SplineSDF | Carve,
     **options: Unpack[WriteOptions],
 ) -> None:
     """Write contours, or the field of a spline, to a file, whole or not at all.
@@ -77,9 +79,9 @@ def write(
         ``.glsl .wgsl``          a spline: functions for shaders, in float32 (`SplineSDF.to_glsl`,
                                  `SplineSDF.to_wgsl`), and in the comment at the end their table
         ======================== ===========================================================
-    contours : iterable of Contour, one Contour, Shape, or SplineSDF
+    contours : iterable of Contour, one Contour, Shape, SplineSDF, or Carve
         Of a shape its boundary is written (its offset by 0, to half the tolerance); a spline takes
-        none of the options.
+        none of the options; the paths of a carve go into G-code and CSV, in space.
 
     Other Parameters
     ----------------
@@ -152,7 +154,7 @@ def write(
 
 def file_text(
     path: str | os.PathLike[str],
-    contours: Iterable[Contour] | Contour,
+    contours: Iterable[Contour] | Contour | Carve,
     **options: Unpack[WriteOptions],
 ) -> str:
     """What `write` writes."""
@@ -160,6 +162,8 @@ def file_text(
     asked: dict[str, Any] = {**DEFAULTS, **options}
     tolerance = asked.pop("tolerance")
     suffix, placement = check_format(path, **asked)
+    if isinstance(contours, Carve):
+        return carved_text(path, suffix, placement, contours, {**asked, "tolerance": tolerance})
     chains = _as_contours(contours)
     xmin, ymin, xmax, ymax = box(chains)
     size = max(xmax - xmin, ymax - ymin)

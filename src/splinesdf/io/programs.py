@@ -55,6 +55,7 @@ class Reader:
 
     def __init__(self, text: str, laser: bool) -> None:
         self.ways: list[Way] = []
+        self.cuts: list[Move] = []  # all of them, straight down as well
         self.faults: list[str] = []
         self.laser = laser
         self.here, self.z, self.contour = 0j, math.nan, -1
@@ -113,6 +114,7 @@ class Reader:
         """G1, G2, G3: down, or along the open way."""
         if math.isnan(self.feed):
             self.blame(f"line {at} cuts without a feed")
+        self.cuts.append(Move(self.here, end, (self.z, z)))
         if not plane:
             return
         if self.laser and not self.lit:

@@ -43,8 +43,7 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     """
     milling = Milling() if options.milling is None else options.milling
     largest = max(float(np.abs(contour.arcs).max()) for contour in contours)
-    decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(options.tolerance)) + _DECIMALS_BEYOND)
-    decimals = max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
+    decimals = decimals_of(options.tolerance, largest)
     mirrored = options.mirrored or (False,) * len(contours)
     paths = [
         path_of(contour, _SHARE * options.tolerance, milling.direction, seen)
@@ -52,15 +51,21 @@ def gcode_text(contours: Sequence[Contour], options: Options) -> str:
     ]
     cut = [k for k, path in enumerate(paths) if path.pieces]
     around = smallest_around([contours[k] for k in cut])
-    program = _Program(milling, options, decimals, contours)
-    program.begin(len(paths))
+    program = Program(milling, options, decimals, contours)
+    program.begin(f"{len(paths)} contours", f"{milling.direction} milling")
     snap = _SNAP * 10.0**-decimals
     for path in ordered([paths[k] for k in cut], around, complex(*milling.start), snap):
         program.follow(path)
     return program.ended()
 
 
-class _Program:
+def decimals_of(tolerance: float, largest: float) -> int:
+    """How many decimals coordinates have, by the tolerance and the largest of them."""
+    decimals = max(_FEWEST_DECIMALS, math.ceil(-math.log10(tolerance)) + _DECIMALS_BEYOND)
+    return max(0, min(decimals, _DIGITS - math.ceil(math.log10(largest))))
+
+
+class Program:
     """The lines of a program, and the feed that is in force after them."""
 
     def __init__(
@@ -70,30 +75,30 @@ class _Program:
         self.units = "mm" if options.units is None else options.units
         self.tolerance, self.decimals = options.tolerance, decimals
         self.lines: list[str] = []
-        self.feed = _plain(milling.feed or DEFAULT_FEED[self.units])
-        self.plunge = self.feed if milling.plunge_feed is None else _plain(milling.plunge_feed)
+        self.feed = plain(milling.feed or DEFAULT_FEED[self.units])
+        self.plunge = self.feed if milling.plunge_feed is None else plain(milling.plunge_feed)
         self.in_force, self.z, self.by = "", math.nan, options.by
         if milling.lead is not None:
             self.room = Room(contours, options.tolerance, milling.direction == "climb")
 
-    def begin(self, count: int) -> None:
+    def begin(self, what: str, how: str) -> None:
         """What the program is, the modes, and the spindle."""
         milling = self.milling
-        self.say(f"splinesdf: {count} contours, lengths in {self.units}")
-        self.say(f"within {self.tolerance:.6g}, {milling.direction} milling")
+        self.say(f"splinesdf: {what}, lengths in {self.units}")
+        self.say(f"within {self.tolerance:.6g}, {how}")
         if milling.feed is None:
             self.say(f"no feed was asked for: {self.feed} a minute, which is slow")
         if milling.laser_power is None and milling.spindle_speed is None:
             self.say("start the spindle before: clockwise, seen from above")
         words = {"units": "G21" if self.units == "mm" else "G20"}
-        words["tolerance"] = _plain(float(f"{self.tolerance:.6g}"))
+        words["tolerance"] = plain(float(f"{self.tolerance:.6g}"))
         self.lines += [line.format(**words) for line in self.machine.header]
         if milling.laser_power is not None:
             self.lines.append("M5")
             return
         self.lift()
         if milling.spindle_speed is not None:
-            self.lines += filter(None, [f"M3 S{_plain(milling.spindle_speed)}", self.machine.dwell])
+            self.lines += filter(None, [f"M3 S{plain(milling.spindle_speed)}", self.machine.dwell])
 
     def ended(self) -> str:
         """The whole text."""
@@ -102,10 +107,12 @@ class _Program:
         return "\n".join([*self.lines, *self.machine.end]) + "\n"
 
     def say(self, text: str) -> None:
+        """A comment."""
         self.lines.append(self.machine.comment.format(text))
 
     def lift(self) -> None:
-        self.lines.append(f"G0 Z{_plain(self.milling.safe_height)}")
+        """Up, to where ways between contours are."""
+        self.lines.append(f"G0 Z{plain(self.milling.safe_height)}")
 
     def follow(self, path: Path) -> None:
         """One contour: there, down, along it, and up, in as many passes as are asked for."""
@@ -113,7 +120,7 @@ class _Program:
         laser = milling.laser_power is not None
         self.say(f"distance {float(path.distance) + 0.0!r}")
         into = self.lead(path, out=False)
-        there = f"G0 {_xy((into or path.pieces[0]).start, self.decimals)}"
+        there = f"G0 {xy((into or path.pieces[0]).start, self.decimals)}"
         self.lines.append(there)
         entered, away = path, False
         for k, depth in enumerate(depths):
@@ -128,7 +135,7 @@ class _Program:
             if named and not beside:
                 self.say(f"pass {k + 1} of {len(depths)}")
             if laser:
-                self.lines.append(f"{milling.beam} S{_plain(milling.laser_power or 0.0)}")
+                self.lines.append(f"{milling.beam} S{plain(milling.laser_power or 0.0)}")
             else:
                 self.down(above if sloping else -depth)
             if into is not None:
@@ -187,7 +194,7 @@ class _Program:
 
     def down(self, z: float) -> None:
         """Straight down, or up to the height of a tab."""
-        self.lines.append(f"G1 Z{_plain(z)} F{self.plunge}")
+        self.lines.append(f"G1 Z{plain(z)} F{self.plunge}")
         self.in_force, self.z = self.plunge, z
 
     def cut(self, steps: Sequence[Step], sloping: bool = False) -> None:
@@ -209,7 +216,7 @@ class _Program:
                 if sloping and step.z is not None:
                     self.z = step.z
                     x_y, *rest = move.split(" I")
-                    move = " I".join([f"{x_y} Z{_plain(float(f'{step.z:.6g}'))}", *rest])
+                    move = " I".join([f"{x_y} Z{plain(float(f'{step.z:.6g}'))}", *rest])
                 self.lines.append(move if self.in_force == feed else f"{move} F{feed}")
                 self.in_force, here = feed, end
 
@@ -220,10 +227,10 @@ def _move(part: Element, here: complex, end: complex, decimals: int) -> str:
     # Without cancellation: r (1 - cos(sweep / 2)).
     bulge = 2.0 * part.radius * math.sin(0.25 * part.sweep) ** 2
     if part.kind is Kind.LINE or bulge < 0.5 * 10.0**-decimals or spoke == 0.0:
-        return f"G1 {_xy(end, decimals)}"
+        return f"G1 {xy(end, decimals)}"
     turn = "G2" if part.sweep < 0.0 else "G3"
-    i, j = _number(spoke.real, decimals), _number(spoke.imag, decimals)
-    return f"{turn} {_xy(end, decimals)} I{i} J{j}"
+    i, j = number(spoke.real, decimals), number(spoke.imag, decimals)
+    return f"{turn} {xy(end, decimals)} I{i} J{j}"
 
 
 def _spoke(part: Element, here: complex, end: complex, decimals: int) -> complex:
@@ -239,16 +246,17 @@ def _rounded(point: complex, decimals: int) -> complex:
     return complex(round(point.real, decimals), round(point.imag, decimals))
 
 
-def _xy(point: complex, decimals: int) -> str:
-    return f"X{_number(point.real, decimals)} Y{_number(point.imag, decimals)}"
+def xy(point: complex, decimals: int) -> str:
+    """The words of a place."""
+    return f"X{number(point.real, decimals)} Y{number(point.imag, decimals)}"
 
 
-def _plain(value: float) -> str:
+def plain(value: float) -> str:
     """A number as it was given, without an exponent: the decimals of the curve may be too few."""
     return np.format_float_positional(value + 0.0, trim="-")
 
 
-def _number(value: float, decimals: int) -> str:
+def number(value: float, decimals: int) -> str:
     """A number without an exponent, which G-code does not know, nor needless zeros."""
     text = f"{value:.{decimals}f}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
