@@ -2,7 +2,7 @@
 
 Run from the repository's root, with the ``test`` or the ``bench`` extra installed:
 
-    python -m benchmarks.fits [--tables ABCDE] [--points 1000000] [--shapes 12]
+    python -m benchmarks.fits [--tables ABCDE] [--points 1000000] [--shapes 12] [--element quartic]
 
 The paper's curves are fitted on its unit square with absolute tolerances; for other shapes all
 lengths are shares of the shape's size, and the domain is the default one.
@@ -10,7 +10,7 @@ lengths are shares of the shape's size, and the domain is the default one.
 A  leaves, error, proved bound, evaluations and seconds, with and without the proof
 B  the paper's grids at the same true error: tensor grids and uniform ones, operator W
 C  how leaves grow with the tolerance: exponents by least squares
-D  random points against error and bound
+D  random points against error and bound, of any element (the cubic on uniform grids)
 E  operators, and grids to start from
 """
 
@@ -33,6 +33,7 @@ from benchmarks.tables import clock
 from splinesdf.errors import ToleranceNotReached
 from splinesdf.fits.fit import FitResult
 from splinesdf.paper import tables as paper
+from splinesdf.spaces.elements import ELEMENTS
 from tests.glyphs import glyphs
 from tests.real_shapes import SMOOTH, formula_shape, icons, outlines
 
@@ -181,10 +182,11 @@ def random_error(result: FitResult, shape: ss.Shape, count: int, seed: int) -> f
     return largest
 
 
-def table_d(points: int, count: int) -> None:
+def table_d(points: int, count: int, element: str) -> None:
     share = 1e-2
+    space = ELEMENTS[element].spaces[0]
     head(
-        f"D. {points:,} random points a shape, tolerance {share:g} of the size",
+        f"D. {points:,} random points a shape, {element}, {space}, tolerance {share:g} of the size",
         f"{'shape':26} leaves     error    random  random/error  random/bound  bound/error",
     )
     shapes = [formula_shape(name) for name in SMOOTH]
@@ -195,7 +197,7 @@ def table_d(points: int, count: int) -> None:
     for seed, shape in enumerate(shapes):
         case = drawn(shape)
         try:
-            result = case.fit(share)
+            result = case.fit(share, element=element, space=space)
         except ToleranceNotReached as missed:
             failures.append(f"{case.name}: {missed}")
             continue
@@ -252,12 +254,13 @@ def main() -> None:
     parser.add_argument("--tables", default="ABCDE", help="which tables")
     parser.add_argument("--points", type=int, default=1_000_000, help="random points a shape (D)")
     parser.add_argument("--shapes", type=int, default=12, help="glyphs and icons, of each (D)")
+    parser.add_argument("--element", default="quadratic", choices=ELEMENTS, help="B-splines (D)")
     options = parser.parse_args()
     tables: dict[str, Callable[[], None]] = {
         "A": table_a,
         "B": table_b,
         "C": table_c,
-        "D": partial(table_d, options.points, options.shapes),
+        "D": partial(table_d, options.points, options.shapes, options.element),
         "E": table_e,
     }
     if hasattr(os, "getloadavg"):

@@ -74,7 +74,7 @@ KINDS: dict[str, str] = {
     ),
     **dict.fromkeys(("tab_width", "tab_height"), "number"),
     **dict.fromkeys(
-        ("tabs", "nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j"), "whole"
+        ("tabs", "nx", "ny", "max_cells", "count", "index", "m", "n", "i", "j", "family"), "whole"
     ),
     **dict.fromkeys(("degree", "samples", "max_steps", "workers"), "whole"),
     **dict.fromkeys(

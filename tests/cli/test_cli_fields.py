@@ -56,8 +56,8 @@ def test_info_of_formulas_and_of_sorted_json(run: Command, tmp_path: Path) -> No
     [
         (["fit", "gamma1", "-o", "fit.npz", "-o", "fit.txt"], ".json, .npz, .vtu"),
         (
-            ["fit", "gamma1", "--element", "cubic", "--space", "uniform", "-o", "a.vtu"],
-            "quadratic element for .vtu, got cubic: save the fit as .npz or .json",
+            ["fit", "gamma1", "--element", "cubic", "--space", "uniform", "-o", "a.glsl"],
+            "quadratic or quartic element for .glsl, got cubic: save the fit as .npz or .json",
         ),
         (["fit", "gamma1", "--element", "sextic", "-o", "a.vtu"], "sextic"),
         (["offset", "gamma1", "-d", "1", "-o", "a.vtu"], "expected a spline for .vtu"),

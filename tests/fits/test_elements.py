@@ -53,7 +53,7 @@ def test_brackets_of_cells_hold(shape: ss.Shape, factor: float, element: str) ->
     assert (known.low <= found + slope * reach).all()
 
 
-@pytest.mark.parametrize("element", ["cubic", "quartic"])
+@pytest.mark.parametrize("element", ["cubic", "quartic", "S31", "M222", "M1122"])
 def test_quadratic_pieces_miss_no_more_than_they_say(element: str) -> None:
     random, kind = np.random.default_rng(0), ELEMENTS[element]
     numbers = random.normal(size=(6, kind.numbers))
@@ -120,6 +120,8 @@ def test_pieces_in_bands_leave_out_what_does_not_count() -> None:
 CASES = [
     ("cubic", "uniform", None, 0.04),
     ("cubic", "uniform", (-0.1, 0.05), 1e-3),
+    ("S31", "uniform", (-0.01, 0.01), 1e-4),
+    ("M1122", "uniform", (0.01, 0.02), 1e-4),
     ("quartic", "uniform", (0.01, 0.02), 1e-4),
     ("quartic", "hierarchical", None, 0.04),
     ("quartic", "hierarchical", (-0.01, -0.01), 1e-6),
@@ -167,9 +169,10 @@ def test_what_such_a_spline_does_not_answer_is_said(element: str) -> None:
     from splinesdf.web.page import write_page
 
     spline = ss.interpolate(CIRCLE, (8, 8), element=element).spline
-    for call in (spline.triangles, spline.to_skfem, spline.to_glsl, spline.coefficients):
-        with pytest.raises(ss.InputError, match="expected a quadratic spline"):
-            call()
+    with pytest.raises(ss.InputError, match="expected a quadratic spline for scikit-fem"):
+        spline.to_skfem()
+    with pytest.raises(ss.InputError, match="expected a quadratic spline, got"):
+        spline.to_arrays()
     with pytest.raises(ss.InputError, match="expected a quadratic spline for the page"):
         write_page("never.html", spline)
     assert np.isnan(spline([(9.0, 9.0)], outside="nan")).all()
@@ -180,7 +183,9 @@ def test_what_such_a_spline_does_not_answer_is_said(element: str) -> None:
         ss.fit(CIRCLE, tolerance=0.1, element="cubic")
     with pytest.raises(ss.InputError, match="uniform for the cubic element, got 'tensor'"):
         ss.fit(CIRCLE, tolerance=0.1, element="cubic", space="tensor")
-    with pytest.raises(ss.InputError, match="element of quadratic, cubic, quartic, got 'septic'"):
+    with pytest.raises(
+        ss.InputError, match="element of quadratic, cubic, quartic, S31, M222, M1122, got 'septic'"
+    ):
         ss.fit(CIRCLE, tolerance=0.1, element="septic")
     with pytest.raises(TypeError, match="unexpected keyword argument 'bands'"):
         ss.fit(CIRCLE, tolerance=0.1, bands=(0, 1))  # type: ignore[call-arg]

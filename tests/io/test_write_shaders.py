@@ -34,7 +34,7 @@ def test_refused_in_one_line(tmp_path: Path) -> None:
     cubic = ss.interpolate(shape, (4, 4), element="cubic").spline
     for kind in ("glsl", "wgsl"):
         path = tmp_path / f"field.{kind}"
-        with pytest.raises(ss.InputError, match="expected a quadratic spline for shaders"):
+        with pytest.raises(ss.InputError, match="expected a quadratic or quartic spline"):
             ss.write(path, cubic)
         with pytest.raises(ss.InputError, match=f"expected a spline for .{kind}, got none"):
             ss.write(path, ss.offset(shape, 0.1))

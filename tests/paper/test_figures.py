@@ -21,6 +21,7 @@ from mpl_toolkits.mplot3d import Axes3D
 import splinesdf as ss
 from splinesdf import plot
 from splinesdf.paper import figures
+from splinesdf.paper import panels as panels_of
 from tests.named_shapes import curve, gamma
 
 # The paper's captions: figure -> its curve and its panels.
@@ -122,7 +123,7 @@ def test_no_text_is_cut_off_or_lies_on_another(number: int) -> None:
 
 
 def curve_lines(ax: Any) -> list[Any]:
-    return [line for line in ax.get_lines() if to_rgb(line.get_color()) == to_rgb(figures._CURVE)]
+    return [line for line in ax.get_lines() if to_rgb(line.get_color()) == to_rgb(panels_of.CURVE)]
 
 
 @pytest.mark.parametrize(
@@ -199,7 +200,7 @@ def check_surface(
 
 def chains(ax: Any) -> list[np.ndarray]:
     """The offsets' polylines: what is drawn in their color."""
-    color = np.array([*to_rgb(figures._LEVEL), 1.0])
+    color = np.array([*to_rgb(panels_of.LEVEL), 1.0])
     return [
         np.asarray(segment)
         for c in ax.collections
@@ -274,9 +275,9 @@ def test_curve_and_offset_are_told_apart_in_gray(number: int) -> None:
         (offsets,) = [c for c in ax.collections if isinstance(c, LineCollection)]
         assert all(dashes is None for _, dashes in offsets.get_linestyle())
     # And as the paper has them: the curve blue, its offsets red.
-    red, _, blue = to_rgb(figures._CURVE)
+    red, _, blue = to_rgb(panels_of.CURVE)
     assert blue > 0.6 > 0.1 > red
-    red, _, blue = to_rgb(figures._LEVEL)
+    red, _, blue = to_rgb(panels_of.LEVEL)
     assert red > 0.6 > 0.1 > blue
 
 

@@ -7,8 +7,10 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.meshes import Grid
+from splinesdf.spaces.elements import ELEMENTS
+from splinesdf.spaces.space import space_on
 from splinesdf.spaces.tensor import tensor_ordinates
-from splinesdf.splines.quasi import bspline
+from splinesdf.splines.quasi import bspline, quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 
 GRIDS = [
@@ -49,6 +51,34 @@ def test_sum_of_bsplines_is_the_spline(mesh: Grid, seed: int) -> None:
     np.testing.assert_allclose(found, given, rtol=0, atol=1e-11)
 
 
+@pytest.mark.parametrize("name", ["quartic", "cubic"])
+@pytest.mark.parametrize("shape", [(1, 1), (4, 1), (5, 6)])
+def test_sum_of_others_is_the_spline(name: str, shape: tuple[int, int]) -> None:
+    element, mesh = ELEMENTS[name], Grid.uniform((-1.0, 0.0, 2.0, 1.0), *shape)
+    random = np.random.default_rng(5)
+    beyond = {"quartic": 2, "cubic": 1}[name]
+    drawn = random.normal(size=(shape[0] + 1 + beyond, shape[1] + 1 + beyond))
+    every = {
+        (i, j): bspline(mesh, i - 1, j - 1, element).ordinates for i, j in np.ndindex(drawn.shape)
+    }
+    numbers = sum(drawn[place] * ordinates for place, ordinates in every.items())
+    found = SplineSDF(mesh, np.asarray(numbers), element=element).coefficients()
+    signs = (-1.0) ** np.add.outer(*map(np.arange, drawn.shape))
+    away = signs * (signs * drawn).mean() if name == "quartic" else 0.0
+    np.testing.assert_allclose(found, drawn - away, rtol=0, atol=1e-12)
+
+
+def test_of_many_quartic_cells_far_from_the_origin() -> None:
+    mesh = Grid.uniform((1e6, 1e6, 1e6 + 2.0, 1e6 + 2.0), 160, 150)
+    made = quasi_interpolate(
+        lambda p: np.hypot(*(p - 1e6 - 1.0).T) - 0.7, mesh, "O", ELEMENTS["quartic"]
+    )
+    found = made.coefficients()
+    assert found.shape == (163, 153)
+    again = space_on(made.mesh, made.element).numbers(found.reshape(-1))
+    np.testing.assert_allclose(again, made.ordinates, rtol=0, atol=1e-11)
+
+
 def test_of_a_shape() -> None:
     made = ss.interpolate(ss.Shape.circle((0, 0), 1), (40, 30)).spline
     again = tensor_ordinates(made.mesh, made.coefficients())
@@ -66,12 +96,17 @@ def test_sides_of_many_sizes() -> None:
 def test_refused() -> None:
     disk = ss.Shape.circle((0, 0), 1)
     tree = ss.fit(disk, tolerance=0.05).spline
-    cubic = ss.interpolate(disk, (6, 6), element="cubic").spline
-    for spline in (tree, cubic):
-        with pytest.raises(ss.InputError, match="expected a quadratic spline on a grid"):
+    mean = ss.interpolate(disk, (6, 6), element="S31").spline
+    for spline in (tree, mean):
+        with pytest.raises(ss.InputError, match="element quadratic, quartic, cubic on a grid"):
             spline.coefficients()
     made = ss.interpolate(disk, (6, 6)).spline
     changed = made.ordinates.copy()
     changed[7, 3] += 1e-6
     with pytest.raises(ss.InputError, match="do not fit together"):
         SplineSDF(made.mesh, changed).coefficients()
+    quartic = ss.interpolate(disk, (6, 6), element="quartic").spline
+    changed = quartic.ordinates.copy()
+    changed[7, 13] += 1e-6
+    with pytest.raises(ss.InputError, match="do not fit together"):
+        SplineSDF(made.mesh, changed, element=quartic.element).coefficients()

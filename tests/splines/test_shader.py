@@ -76,10 +76,24 @@ def test_places_that_float32_does_not_tell_apart() -> None:
         flat(Grid.uniform(UNIT, 2, 2), 1e39).to_glsl()
 
 
-def test_cubic_splines_have_no_shader() -> None:
-    spline = ss.interpolate(gamma("gamma1"), (4, 4), element="cubic").spline
-    with pytest.raises(ss.InputError, match="expected a quadratic spline"):
-        spline.to_glsl()
+def test_a_quartic_cell_is_four_texels() -> None:
+    spline = ss.fit(gamma("gamma2"), 1e-2, element="quartic").spline
+    (code, table), (other, same) = spline.to_glsl(), spline.to_wgsl()
+    cells = spline.mesh.cell_count
+    numbers = table.reshape(-1, 16)[:cells]
+    assert np.array_equal(numbers[:, :15], spline.ordinates.astype(np.float32))
+    assert not numbers[:, 15].any()
+    assert np.array_equal(table, same)
+    assert f"sdf_texel({4 * cells} + k / 4)" in code
+    assert f"sdf_table[{4 * cells} + k / 4]" in other
+
+
+@pytest.mark.parametrize("element", ["cubic", "M222"])
+def test_other_splines_have_no_shader(element: str) -> None:
+    spline = ss.interpolate(gamma("gamma1"), (4, 4), element=element).spline
+    for call in (spline.to_glsl, spline.to_wgsl):
+        with pytest.raises(ss.InputError, match="expected a quadratic or quartic spline"):
+            call()
 
 
 def test_no_name_of_a_shape_leaves_its_comment() -> None:

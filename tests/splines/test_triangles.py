@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 import splinesdf as ss
 from splinesdf.meshes import Grid, Mesh, Quadtree
-from splinesdf.spaces.cubic import CUBIC
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.triangles import Triangles
 from tests.examples import examples
@@ -201,7 +200,6 @@ def test_what_has_no_such_mesh_is_refused() -> None:
     nan = np.zeros((4, 8))
     nan[1, 2] = np.nan
     for spline, message in (
-        (ss.SplineSDF(grid, np.zeros((4, CUBIC.numbers)), element=CUBIC), "got a cubic one: fit"),
         (ss.SplineSDF(grid, nan), "finite"),
         (ss.SplineSDF(grid, np.full((4, 8), 1e308)), r"up to 1e\+100"),
         (ss.SplineSDF(grid, np.zeros((3, 8))), "4 cells, got of 3"),

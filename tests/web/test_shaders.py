@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 import splinesdf as ss
 from splinesdf.meshes import Quadtree
+from splinesdf.spaces.elements import ELEMENTS
 from splinesdf.splines.quasi import quasi_interpolate
 from tests.docs.pages import DOCS, blocks_of
 
@@ -93,10 +95,25 @@ def tree() -> ss.SplineSDF:
     )
 
 
-@pytest.mark.parametrize("name", ["tree", "part", "thin", "grid", "equal"])
+def quartic_tree() -> ss.SplineSDF:
+    return quasi_interpolate(wavy, tree().mesh, "O", ELEMENTS["quartic"])
+
+
+def equal(element: str) -> ss.SplineSDF:
+    return ss.interpolate(ss.example("gamma1"), (7, 5), element=element).spline
+
+
+OWN = {
+    "tree": tree,
+    "equal": partial(equal, "quadratic"),
+    "quartic tree": quartic_tree,
+    "quartic equal": partial(equal, "quartic"),
+}
+
+
+@pytest.mark.parametrize("name", [*OWN, "part", "thin", "grid"])
 def test_the_shader_is_the_spline(name: str, splines: Any, run: Run) -> None:
-    own = {"tree": tree, "equal": lambda: ss.interpolate(ss.example("gamma1"), (7, 5)).spline}
-    spline = own[name]() if name in own else splines(name)
+    spline = OWN[name]() if name in OWN else splines(name)
     code, table = spline.to_glsl("away")
     low, high = np.reshape(spline.domain, (2, 2))
     boxes, rng = spline.mesh.boxes, np.random.default_rng(3)

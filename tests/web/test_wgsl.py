@@ -12,7 +12,7 @@ import pytest
 import splinesdf as ss
 from tests.shader_files import table_in
 from tests.web.conftest import missing
-from tests.web.test_shaders import tree
+from tests.web.test_shaders import OWN
 
 # WebGPU without a graphics card, on a processor.
 _FLAGS = ("--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
@@ -87,10 +87,9 @@ def run(tab: Any) -> Run:
     return answers
 
 
-@pytest.mark.parametrize("name", ["tree", "part", "grid", "equal"])
+@pytest.mark.parametrize("name", [*OWN, "part", "grid"])
 def test_the_shader_is_the_spline(name: str, splines: Any, run: Run) -> None:
-    own = {"tree": tree, "equal": lambda: ss.interpolate(ss.example("gamma1"), (7, 5)).spline}
-    spline = own[name]() if name in own else splines(name)
+    spline = OWN[name]() if name in OWN else splines(name)
     low, high = np.reshape(spline.domain, (2, 2))
     boxes, rng = spline.mesh.boxes, np.random.default_rng(3)
     cells = boxes[rng.integers(0, len(boxes), 1500)]

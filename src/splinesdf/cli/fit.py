@@ -41,12 +41,12 @@ from splinesdf.splines.archive import SAVED
 )
 @click.option(
     "--operator",
-    help="S, W, V or P; quartic: O, C, D, V.  [default: S; P for bands; W on a tensor grid; O]",
+    help="S W V P; of others O C D X S V.  [default: S; P for bands; W on a tensor grid; O]",
 )
 @click.option(
     "--element",
     default="quadratic",
-    help="quadratic, quartic, or cubic (uniform).",
+    help="quadratic, quartic; uniform: cubic, S31, M222, M1122.",
     show_default=True,
 )
 @click.option("--no-proof", is_flag=True, help="Sample what a proof takes a closer look for.")
@@ -113,9 +113,10 @@ def _check_fit(path: str, element: str) -> None:
             f"expected a file name ending in {', '.join(sorted({*SAVED, *FIELDS}))} for a fit, got "
             f"{path!r}"
         )
-    if _suffix(path) in FIELDS and find_element(element).degree != 2:
+    kind, suffix = find_element(element), _suffix(path)
+    if suffix in FIELDS and suffix != ".vtu" and kind.power_form is None:
         raise ss.InputError(
-            f"expected a quadratic element for {_suffix(path)}, got {element}: save the fit as "
+            f"expected a quadratic or quartic element for {suffix}, got {element}: save the fit as "
             ".npz or .json"
         )
 

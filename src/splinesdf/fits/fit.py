@@ -191,15 +191,17 @@ def fit(
     Other Parameters
     ----------------
     space : {"hierarchical", "tensor", "uniform"}
-    element : {"quadratic", "quartic", "cubic"}
+    element : {"quadratic", "quartic", "cubic", "S31", "M222", "M1122"}
         The B-splines, see ``splinesdf.spaces``. Quartic ones are C², of order 4, and pay around
         levels of smooth outlines at small tolerances, and for curvature; not on tensor grids.
-        Cubic ones, C¹ of order 3 as quadratic ones, are for comparison, in uniform space only.
+        The others are for comparison, in uniform space only: cubic ones and their mean S31, C¹ of
+        order 3 as quadratic ones, and the quartic M222 and M1122, see docs/fit.md.
     operator : str, optional
         The quasi-interpolant. Of the quadratic element S, W, V or P: unless given S, which needs
         the fewest cells at ridges of the distance; for bands P, which reproduces quadratics across
         levels and needs the fewest around smooth levels; W on a tensor grid, which has neither.
-        Of the quartic one O (unless given), C, D or V; of the cubic one S or V.
+        Of the quartic one O (unless given), C, D or V; of cubic ones S or V; of M222 O, X or V, of
+        M1122 O, C, D or V.
     band : pair of float, or several, optional
         Keep the tolerance only where lo <= u <= hi or lo <= s <= hi; elsewhere the spline may
         be anything that does not take values of the band.

@@ -54,12 +54,12 @@ def interpolate(
         Columns and rows of equal cells; or the knots of a tensor grid, two increasing arrays of
         shapes (m + 1,) and (n + 1,).
     operator : str, optional
-        The quasi-interpolant. Of the quadratic element W (unless given), V, S or P, of the cubic
-        one S or V, of the quartic one O, C, D or V. S and P need equal cells. None of them has
-        the distance's values at points, as an interpolant in the strict sense would.
+        The quasi-interpolant. Of the quadratic element W (unless given), V, S or P; of the others
+        as in `fit`. S and P need equal cells. None of them has the distance's values at points, as
+        an interpolant in the strict sense would.
     domain : (xmin, ymin, xmax, ymax), optional
         For (m, n); knots are a domain. As in `fit` unless given.
-    element : {"quadratic", "quartic", "cubic"}
+    element : {"quadratic", "quartic", "cubic", "S31", "M222", "M1122"}
         As in `fit`.
 
     Returns

@@ -66,7 +66,7 @@ class TreeSamples:
     def __init__(self, target: Target, space: HierarchicalSpace, operator: Operator) -> None:
         self._target, self._space, self.count = target, space, 0
         # From the centers of the cells that B-splines belong to, to their own.
-        self._shift = space.element.center - 0.5
+        self._shift = np.array(space.element.centers[0]) - 0.5
         self._has_corners = bool(np.any((np.array(operator.offsets) + self._shift) % 1.0))
         every = np.arange(len(space.places))
         self._centers = self._ask(every, np.zeros((len(every), 2)))

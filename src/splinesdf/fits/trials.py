@@ -107,7 +107,9 @@ class Trial:
         fresh = np.flatnonzero(space.own & np.isnan(self._coefficients))
         operator = operator_on(space, self._operator)
         self._coefficients[fresh] = operator.coefficients(
-            space.places[fresh], lambda offsets: samples.at(fresh, offsets)
+            space.places[fresh],
+            space.family[fresh],
+            lambda offsets: samples.at(fresh, offsets),
         )
         found = space.numbers(self._coefficients)
         cells = space.cells

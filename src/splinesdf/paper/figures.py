@@ -15,8 +15,7 @@ References
 from __future__ import annotations
 
 import os
-import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,24 +29,12 @@ from splinesdf.fits.fit import FitResult
 from splinesdf.fits.interpolation import interpolate
 from splinesdf.offsets.offset import deviation
 from splinesdf.paper import tables as paper
+from splinesdf.paper.panels import LEVEL, OFFSET, SYMBOLS, caption, draw_curve, new_page, title
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 NUMBERS = tuple(range(5, 13))
-# The paper's delta.
-_OFFSET = 0.01
-_SYMBOLS = {"gamma1": "Γ₁", "gamma2": "Γ₂", "gamma3": "Γ₃"}
-# How often the formula runs through the curve: twice would fill the gaps of a dashed line.
-_TRACES = {"gamma1": 1, "gamma2": 1, "gamma3": 2}
-# Chords of so many points leave the curves by 3e-6: a hundredth of a dot.
-_POINTS = 1000
-# The paper's colors, in shades that color-blind readers tell apart; in print the dashes do.
-_CURVE, _LEVEL = plot.INSIDE, plot.OUTSIDE
-_DASHES = (0.0, (5.0, 2.0))
-# Letters on a line of a caption, which is as wide as the figure.
-_LINE = 118
 
 
 def figures(folder: str | os.PathLike[str]) -> list[Path]:
@@ -108,19 +95,19 @@ def final(name: str, mesh: paper.MeshName, operator: str) -> FitResult:
 
 
 def _surfaces(number: int, name: str) -> Figure:
-    made = _new(3.6, right=0.04)
-    symbol = _SYMBOLS[name]
+    made = new_page(3.6, right=0.04)
+    symbol = SYMBOLS[name]
     axes = made.add_subplot(1, 3, 1)
-    _curve(name, axes)
-    _title(axes, "a", f"the curve {symbol}")
+    draw_curve(name, axes)
+    title(axes, "a", f"the curve {symbol}")
     results = {operator: final(name, "uniform", operator) for operator in "VW"}
     for k, (operator, result) in enumerate(results.items()):
         axes = made.add_subplot(1, 3, k + 2, projection="3d")
         plot.plot_surface(result.spline, axes)
-        _title(axes, "bc"[k], f"{operator}({symbol}), {plot.error_text(result)}")
-    _caption(
+        title(axes, "bc"[k], f"{operator}({symbol}), {plot.error_text(result)}")
+    caption(
         made,
-        number,
+        f"Figure {number}. "
         f"The curve {symbol} and its signed distance by V and by W on {_cells(results['W'])} equal "
         "cells. Here the distance is negative inside and the surface dips there; the paper's "
         "surfaces are positive inside, ours upside down. The dark line is the zero level. "
@@ -130,23 +117,23 @@ def _surfaces(number: int, name: str) -> Figure:
 
 
 def _offsets(number: int, name: str) -> Figure:
-    made = _new(9.2)
-    symbol = _SYMBOLS[name]
+    made = new_page(9.2)
+    symbol = SYMBOLS[name]
     axes = made.subplots(2, 2, sharex=True, sharey=True)
     results = {operator: final(name, "uniform", operator) for operator in "WV"}
     panels = [(sign, operator) for sign in (1.0, -1.0) for operator in "WV"]
     for letter, (sign, operator), ax in zip("abcd", panels, axes.flat, strict=True):
-        contours = results[operator].spline.contours(sign * _OFFSET)
-        _curve(name, ax, dashed=True)
-        plot.plot_contours(contours, ax, color=_LEVEL)
+        contours = results[operator].spline.contours(sign * OFFSET)
+        draw_curve(name, ax, dashed=True)
+        plot.plot_contours(contours, ax, color=LEVEL)
         off = plot.at_most(deviation(paper.shape(name), contours))
         side = "+" if sign > 0.0 else "−"
-        _title(ax, letter, f"{operator}({symbol}) = {side}{_OFFSET}: {_chains(contours)}")
+        title(ax, letter, f"{operator}({symbol}) = {side}{OFFSET}: {_chains(contours)}")
         ax.set_xlabel(f"its distance is wrong by {off} at most", fontsize=8, color=plot.INK)
-    _caption(
+    caption(
         made,
-        number,
-        f"The curve {symbol} (blue, dashed) and its offsets (red) at the distance {_OFFSET}, "
+        f"Figure {number}. "
+        f"The curve {symbol} (blue, dashed) and its offsets (red) at the distance {OFFSET}, "
         "outside (a, b) and inside (c, d): level sets of W and V on "
         f"{_cells(results['W'])} equal cells. "
         "Here the distance is negative inside, so that −0.01 is inside; the paper's surfaces are "
@@ -156,19 +143,19 @@ def _offsets(number: int, name: str) -> Figure:
 
 
 def _meshes(number: int, name: str) -> Figure:
-    made = _new(5.1)
-    symbol = _SYMBOLS[name]
+    made = new_page(5.1)
+    symbol = SYMBOLS[name]
     results = {operator: final(name, "tensor", operator) for operator in "WV"}
     axes = made.subplots(1, 2, sharex=True, sharey=True)
     for letter, (operator, result), ax in zip("ab", results.items(), axes, strict=True):
         plot.plot_mesh(result.spline, ax, diagonals=True)
-        _curve(name, ax)
-        _title(
+        draw_curve(name, ax)
+        title(
             ax, letter, f"{operator}({symbol}): {_cells(result)} cells, {plot.error_text(result)}"
         )
-    _caption(
+    caption(
         made,
-        number,
+        f"Figure {number}. "
         f"The tensor meshes at which the paper's refinement ends for {symbol}, with both diagonals "
         "of every cell: on each triangle the spline is one quadratic. It halves the columns and "
         f"rows of cells whose centers are off by {paper.SIGMA:g} or more, until there are none or "
@@ -176,38 +163,6 @@ def _meshes(number: int, name: str) -> Figure:
         f"{_errors(results)}",
     )
     return made
-
-
-def _new(height: float, *, right: float = 0.0) -> Figure:
-    """A figure with room between its panels: numbers of neighbors must not touch.
-
-    At the right a share of the width is kept free, as the layout does not see labels of 3D axes.
-    """
-    made = plot.new_figure(8.0, height)
-    made.set_layout_engine(
-        "constrained",
-        w_pad=0.1,
-        h_pad=0.08,
-        wspace=0.03,
-        hspace=0.02,
-        rect=(0.0, 0.0, 1.0 - right, 1.0),
-    )
-    return made
-
-
-def _curve(name: str, ax: Axes, *, dashed: bool = False) -> None:
-    """The region inside the curve, the curve, and the unit square around it."""
-    plot.plot_fill(paper.shape(name), ax)
-    formula = paper.formula(name)
-    stop = formula.start + (formula.stop - formula.start) / _TRACES[name]
-    x, y = formula(np.linspace(formula.start, stop, _POINTS)).T
-    style = _DASHES if dashed else "solid"
-    ax.plot(x, y, color=_CURVE, linewidth=1.1, linestyle=style, zorder=2.5)
-    xmin, ymin, xmax, ymax = paper.DOMAIN
-    ax.set_xlim(xmin, xmax)
-    ax.set_ylim(ymin, ymax)
-    for side in ax.spines.values():
-        side.set(visible=True, color=plot.FAINT, linewidth=0.6)
 
 
 def _chains(contours: Sequence[Contour]) -> str:
@@ -240,12 +195,3 @@ def _errors(results: dict[str, FitResult]) -> str:
         f"Largest error at the centers of cells, which is the paper's: {centers}; "
         f"anywhere, proved: {anywhere}."
     )
-
-
-def _title(ax: Axes, letter: str, text: str) -> None:
-    ax.set_title(f"({letter})  {text}", fontsize=9, color=plot.INK, loc="left")
-
-
-def _caption(made: Figure, number: int, text: str) -> None:
-    lines: Iterable[str] = textwrap.wrap(f"Figure {number}. {text}", _LINE)
-    made.supxlabel("\n".join(lines), x=0.02, ha="left", fontsize=9, color=plot.INK)

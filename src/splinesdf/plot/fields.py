@@ -75,9 +75,27 @@ def plot_surface(spline: SplineSDF, ax: Any) -> None:
     """Draw the spline as a surface over its domain, with its zero line, on 3D axes."""
     x, y, points = lattice(spline.domain, _SURFACE_SAMPLES)
     value = spline(points)
+    surface(ax, (x, y), value, unit=_unit_of(spline.shape))
+    ax.set_box_aspect((np.ptp(x), np.ptp(y), np.ptp(value)), zoom=1.0)
+    for contour in spline.contours(0.0):
+        line = contour.points(flatness(spline.domain))
+        ax.plot(line[:, 0], line[:, 1], np.zeros(len(line)), color=INK, linewidth=1.2, zorder=2)
+    if spline.y_down:
+        ax.yaxis.set_inverted(True)
+
+
+def surface(
+    ax: Any,
+    lines: tuple[Floats, Floats],
+    value: Floats,
+    *,
+    height: str = "distance",
+    unit: float | None = None,
+) -> None:
+    """Draw values (n, m) above x (m,) and y (n,) on 3D axes, in colors symmetric about zero."""
     top = float(np.abs(value).max())
     ax.plot_surface(
-        *np.meshgrid(x, y),
+        *np.meshgrid(*lines),
         value,
         cmap=_FIELD,
         vmin=-top,
@@ -89,20 +107,15 @@ def plot_surface(spline: SplineSDF, ax: Any) -> None:
         shade=False,
         zorder=1,
     )
-    ax.computed_zorder = False  # else the surface would hide the line that lies in it
-    for contour in spline.contours(0.0):
-        line = contour.points(flatness(spline.domain))
-        ax.plot(line[:, 0], line[:, 1], np.zeros(len(line)), color=INK, linewidth=1.2, zorder=2)
-    ax.set_box_aspect((np.ptp(x), np.ptp(y), np.ptp(value)), zoom=1.0)
+    ax.computed_zorder = False  # else the surface would hide a line that lies in it
     # A distance climbs at 45 degrees: seen from higher than that no part of it hides another.
     ax.view_init(elev=52.0, azim=-60.0)
     ax.set_proj_type("ortho")
     ax.grid(visible=False)
     ax.tick_params(labelsize=8, labelcolor=INK, pad=0)
-    unit = _unit_of(spline.shape)
     ax.set_xlabel(f"x{measured_in(unit)}", fontsize=8, color=INK, labelpad=-4)
     ax.set_ylabel(f"y{measured_in(unit)}", fontsize=8, color=INK, labelpad=-4)
-    ax.set_zlabel(f"distance{measured_in(unit)}", fontsize=8, color=INK, labelpad=3)
+    ax.set_zlabel(f"{height}{measured_in(unit)}", fontsize=8, color=INK, labelpad=3)
     ax.patch.set_visible(False)  # else it would hide the label of axes to the left
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         axis.pane.set_visible(False)
@@ -110,8 +123,6 @@ def plot_surface(spline: SplineSDF, ax: Any) -> None:
         axis.set_tick_params(color=FAINT)
         axis.set_major_locator(few_ticks(3))
     ax.zaxis.set_tick_params(pad=3)
-    if spline.y_down:
-        ax.yaxis.set_inverted(True)
 
 
 def plot_mesh(

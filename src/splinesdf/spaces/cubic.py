@@ -40,23 +40,30 @@ _BELOW_AND_ABOVE = (
     ((2, 1, 0, 0, 0, 0, 0, 0, 0, 0), (2, 0, 1, 0, 0, 0, 0, 0, 0, 0)),
 )
 _DEGREE = 3
-_NORTHWEST = indices(_DEGREE).index((0, 0, 3))
+# Above the diagonal (SW NE NW), the ordinate at NW, and the two beside it.
+NORTHWEST = indices(_DEGREE).index((0, 0, 3))
+BESIDE = tuple(indices(_DEGREE).index(index) for index in ((1, 0, 2), (0, 1, 2)))
 
 
 def _from_coefficients() -> Floats:
     """In a cell the B-spline of neighbor (a, b) is what it is in cell (1 - a, 1 - b) of its 9."""
     columns = [
-        (*_BELOW_AND_ABOVE[8 - k][0], _BELOW_AND_ABOVE[8 - k][1][_NORTHWEST]) for k in range(9)
+        (*_BELOW_AND_ABOVE[8 - k][0], _BELOW_AND_ABOVE[8 - k][1][NORTHWEST]) for k in range(9)
     ]
     return np.array(columns, dtype=np.float64).T / 6.0
 
 
-def _to_ordinates() -> Floats:
-    below = np.hstack([np.eye(10), np.zeros((10, 1))])
-    # Above, the cubic from below goes on, but for its value at NW.
+def to_ordinates(own: tuple[int, ...]) -> Floats:
+    """From the ordinates below the diagonal, and those above it that are not given by these."""
+    below = np.hstack([np.eye(10), np.zeros((10, len(own)))])
+    # Above, the cubic from below goes on, but for its own ordinates.
     above = reparametrized(_DEGREE, np.array([(1, 0, 0), (0, 0, 1), (1, -1, 1)])) @ below
-    above[_NORTHWEST] = 0.0
-    above[_NORTHWEST, 10] = 1.0
+    above[list(own)] = np.eye(len(own), 10 + len(own), 10)
+    return on_four_triangles(_DEGREE, below, above)
+
+
+def on_four_triangles(degree: int, below: Floats, above: Floats) -> Floats:
+    """Ordinates of S E N W from those below and above the diagonal, each (ordinates, k)."""
     # S, E in corners SW SE NE and N, W in corners SW NE NW; the center is halfway on the diagonal.
     south = np.array([(1, 0, 0), (0, 1, 0), (0.5, 0, 0.5)])
     east = np.array([(0, 1, 0), (0, 0, 1), (0.5, 0, 0.5)])
@@ -64,7 +71,7 @@ def _to_ordinates() -> Floats:
     west = np.array([(0, 0, 1), (1, 0, 0), (0.5, 0.5, 0)])
     return np.stack(
         [
-            reparametrized(_DEGREE, corners) @ matrix
+            reparametrized(degree, corners) @ matrix
             for corners, matrix in ((south, below), (east, below), (north, above), (west, above))
         ]
     )
@@ -84,7 +91,7 @@ CUBIC = Element(
     bspline="M2210",
     degree=_DEGREE,
     from_coefficients=_from_coefficients(),
-    to_ordinates=_to_ordinates(),
+    to_ordinates=to_ordinates((NORTHWEST,)),
     mask=_mask(),
     operators={
         "S": Operator(

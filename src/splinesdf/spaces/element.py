@@ -53,20 +53,27 @@ class Operator:
         Whether x is mirrored for B-splines (i, j) with odd i + j.
     equal_cells : bool
         Whether it needs a grid of equal cells, or a quadtree.
+    others : tuple of tuple of float
+        Weights of the element's further families of B-splines, if it has any.
     """
 
     offsets: tuple[tuple[float, float], ...]
     weights: tuple[float, ...]
     by_parity: bool = False
     equal_cells: bool = True
+    others: tuple[tuple[float, ...], ...] = ()
 
-    def coefficients(self, places: Ints, sample: Callable[[Floats], Floats]) -> Floats:
+    def coefficients(
+        self, places: Ints, family: Ints, sample: Callable[[Floats], Floats]
+    ) -> Floats:
         """Coefficients of the B-splines at places (n, 2), shape (n,).
 
         Parameters
         ----------
         places : ndarray, shape (n, 2)
             The cells i, j of their level.
+        family : ndarray, shape (n,)
+            Of the element's families.
         sample : callable
             Answers the function (n,) at offsets (n, 2) in cells from the B-splines' centers.
         """
@@ -74,8 +81,9 @@ class Operator:
         if self.by_parity:
             mirror[:, 0] = np.where((places[:, 0] + places[:, 1]) % 2 == 0, 1.0, -1.0)
         result = np.zeros(len(places))
-        for offset, weight in zip(self.offsets, self.weights, strict=True):
-            result += weight * sample(np.array(offset) * mirror)
+        weights = np.array([self.weights, *self.others])
+        for offset, weight in zip(self.offsets, weights.T, strict=True):
+            result += weight[family] * sample(np.array(offset) * mirror)
         return result
 
 
@@ -86,22 +94,23 @@ class Element:
 
     Those that reach into a cell are of the 3 x 3 cells around it, from one before to one beyond; or
     of 4 x 4, from one before to two beyond, where a B-spline's center is its cell's lower left
-    corner.
+    corner; or of 5 x 5. There may be several such families, whose mean is taken.
 
     Attributes
     ----------
     name : str
-        "quadratic", "cubic", "quartic".
+        "quadratic", "cubic", "quartic", "S31", "M222", "M1122".
     bspline : str
         The box spline: how often it has the directions (1,0) (0,1) (1,1) (1,-1).
     degree : int
-    from_coefficients : ndarray, shape (numbers, 9 or 16)
-        A cell's numbers from the coefficients of the cells around it, j running first.
+    from_coefficients : ndarray, shape (numbers, 9, 16 or 25)
+        A cell's numbers from the coefficients of the cells around it, j running first; family after
+        family.
     to_ordinates : ndarray, shape (4, (degree + 1) (degree + 2) / 2, numbers)
         The Bernstein-Bézier ordinates of the triangles S E N W from a cell's numbers.
-    mask : ndarray, shape (4, k, 3)
+    mask : ndarray, shape (4, k, 3), or None
         Subdivision: for a child (i, j) of its parent, number 2 (i % 2) + j % 2, the places of
-        coarser B-splines from the parent and their weights.
+        coarser B-splines from the parent and their weights. None where there are no quadtrees.
     operators : mapping of str to Operator
         The quasi-interpolants by name.
     defaults : mapping of str to str
@@ -109,8 +118,11 @@ class Element:
         "bands", "everywhere" in the domain, and on a "tensor" grid.
     spaces : tuple of str
         The kinds of space that it spans, see `splinesdf.spaces.space`.
-    center : float
-        Where a B-spline's center is in its cell, each way: 0.5, or 0 for the lower left corner.
+    centers : tuple of (float, float)
+        Where a B-spline's center is in its cell, for each family: (0.5, 0.5), or (0, 0) for the
+        lower left corner.
+    before : int
+        How many cells before a cell, to the left or below, have B-splines that reach it.
     power_form : callable, optional
         From numbers (n, numbers) to the truncated powers that `splinesdf.spaces.kernels` reads:
         (n, 8) of degree 2, in `evaluation`, (n, 15) of degree 4, in `quartics`. Without it a cell
@@ -122,11 +134,12 @@ class Element:
     degree: int
     from_coefficients: Floats
     to_ordinates: Floats
-    mask: Floats
+    mask: Floats | None
     operators: Mapping[str, Operator]
     defaults: Mapping[str, str]
     spaces: tuple[str, ...]
-    center: float = 0.5
+    centers: tuple[tuple[float, float], ...] = ((0.5, 0.5),)
+    before: int = 1
     power_form: Callable[[Floats], Floats] | None = None
 
     @property
@@ -137,7 +150,8 @@ class Element:
     @property
     def beyond(self) -> int:
         """How many cells beyond a cell, to the right or above, have B-splines that reach it."""
-        return isqrt(self.from_coefficients.shape[1]) - 2
+        families = len(self.centers)
+        return isqrt(self.from_coefficients.shape[1] // families) - 1 - self.before
 
     def operator(self, name: str) -> Operator:
         """The quasi-interpolant of a name, or an `InputError`."""
@@ -155,7 +169,7 @@ class Element:
         return self.defaults.get(asked, self.defaults["given"])
 
     def cell_numbers(self, blocks: Floats) -> Floats:
-        """Numbers of cells from the coefficients around them, (n, 9 or 16) -> (n, numbers)."""
+        """Numbers of cells from the coefficients around them, (n, columns) -> (n, numbers)."""
         return _product(blocks, self.from_coefficients)
 
     def ordinates(self, numbers: Floats) -> Floats:

@@ -7,8 +7,9 @@ from splinesdf.spaces.cubic import CUBIC
 from splinesdf.spaces.element import Element
 from splinesdf.spaces.quadratic import QUADRATIC
 from splinesdf.spaces.quartic import QUARTIC
+from splinesdf.spaces.tabulated import M222, M1122, S31
 
-ELEMENTS = {element.name: element for element in (QUADRATIC, CUBIC, QUARTIC)}
+ELEMENTS = {element.name: element for element in (QUADRATIC, CUBIC, QUARTIC, S31, M222, M1122)}
 
 
 def find_element(name: object) -> Element:

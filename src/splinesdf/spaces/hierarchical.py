@@ -87,12 +87,17 @@ class HierarchicalSpace:
         mesh = self.mesh
         split = mesh.child >= 0
         first = roots(mesh.shape, self.element.beyond)
-        return _split(first, np.column_stack([mesh.level, mesh.index])[split])
+        return split_cells(first, np.column_stack([mesh.level, mesh.index])[split])
 
     @property
     def places(self) -> Ints:
         """The cell (i, j) of its level that each B-spline belongs to."""
         return self.nodes.place
+
+    @cached_property
+    def family(self) -> Ints:
+        """There is one family."""
+        return np.zeros(len(self.places), dtype=np.int64)
 
     @cached_property
     def own(self) -> Bools:
@@ -113,7 +118,7 @@ class HierarchicalSpace:
         """Places from the centers of B-splines, offsets (k, 2) in cells, as points (k, 2)."""
         nodes = self.nodes
         side = self._roots * np.exp2(-nodes.level[bsplines].astype(np.float64))[:, None]
-        place = nodes.place[bsplines] + (self.element.center + offsets)
+        place = nodes.place[bsplines] + (np.array(self.element.centers[0]) + offsets)
         return np.asarray(np.array(self.mesh.domain[:2]) + place * side)
 
     def numbers(self, coefficients: Floats) -> Floats:
@@ -121,11 +126,9 @@ class HierarchicalSpace:
         from splinesdf.spaces.kernels.hierarchical import blocks
         from splinesdf.spaces.kernels.hierarchical import coefficients as fill
 
-        nodes, cells = self.nodes, self.cells
-        mask = Mask(
-            self.element.mask[..., :2].astype(np.int64),
-            np.ascontiguousarray(self.element.mask[..., 2]),
-        )
+        nodes, cells, table = self.nodes, self.cells, self.element.mask
+        assert table is not None
+        mask = Mask(table[..., :2].astype(np.int64), np.ascontiguousarray(table[..., 2]))
         every = np.empty(len(coefficients))
         fill(nodes, mask, _coarse_first(nodes), self.own, coefficients, every)
         around = np.empty((len(cells), self.element.from_coefficients.shape[1]))
@@ -215,10 +218,10 @@ def refined(nodes: Nodes, bad: Ints, quarters: Bools) -> Nodes:
     """
     cell, quarter = np.nonzero(quarters)
     cells = np.column_stack([nodes.level[bad], nodes.place[bad]])[cell]
-    return _split(nodes, (cells[:, None] + _BESIDE[quarter]).reshape(-1, 3))
+    return split_cells(nodes, (cells[:, None] + _BESIDE[quarter]).reshape(-1, 3))
 
 
-def _split(nodes: Nodes, targets: Ints) -> Nodes:
+def split_cells(nodes: Nodes, targets: Ints) -> Nodes:
     """The tree in which cells (k, 3), each a level and its place there, are split."""
     from splinesdf.spaces.kernels.hierarchical import mark  # Numba loads only when it is used
 

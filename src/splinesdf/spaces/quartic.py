@@ -128,6 +128,6 @@ QUARTIC = Element(
     },
     defaults={"given": "O", "bands": "O", "everywhere": "O"},
     spaces=("hierarchical", "uniform"),
-    center=0.0,
+    centers=((0.0, 0.0),),
     power_form=power_form,
 )

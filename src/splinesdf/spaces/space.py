@@ -53,6 +53,10 @@ class Space(Protocol):
         """The cell (i, j) of its level that each B-spline belongs to, shape (n, 2)."""
 
     @property
+    def family(self) -> Ints:
+        """Of the element's families, that of each B-spline, shape (n,)."""
+
+    @property
     def own(self) -> Bools:
         """Which B-splines have a coefficient of their own, not by subdivision, shape (n,)."""
 
@@ -123,7 +127,7 @@ def interpolated(space: Space, function: Function, operator: str) -> Floats:
 
     values = np.zeros(len(space.own))
     found = operator_on(space, operator)
-    values[bsplines] = found.coefficients(space.places[bsplines], sample)
+    values[bsplines] = found.coefficients(space.places[bsplines], space.family[bsplines], sample)
     return space.numbers(values)
 
 

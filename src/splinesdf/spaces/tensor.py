@@ -55,11 +55,19 @@ class TensorSpace:
 
     @cached_property
     def places(self) -> Ints:
-        """The cell (i, j) of each B-spline, the ring's from -1 on."""
+        """The cell (i, j) of each B-spline, the ring's from -1 (or -2) on; family after family."""
         m, n = self.mesh.shape
-        beyond = self.element.beyond
-        index = np.meshgrid(np.arange(-1, m + beyond), np.arange(-1, n + beyond), indexing="ij")
-        return np.stack(index, axis=-1).reshape(-1, 2)
+        first, beyond = -self.element.before, self.element.beyond
+        index = np.meshgrid(
+            np.arange(first, m + beyond), np.arange(first, n + beyond), indexing="ij"
+        )
+        return np.tile(np.stack(index, axis=-1).reshape(-1, 2), (len(self.element.centers), 1))
+
+    @cached_property
+    def family(self) -> Ints:
+        """Of the element's families, that of each B-spline."""
+        families = len(self.element.centers)
+        return np.asarray(np.repeat(np.arange(families), len(self.places) // families))
 
     @cached_property
     def own(self) -> Bools:
@@ -68,27 +76,32 @@ class TensorSpace:
 
     @cached_property
     def cells(self) -> Ints:
-        """The B-spline of each cell."""
-        m, n = self.mesh.shape
-        return np.arange(len(self.places)).reshape(self._counts)[1 : m + 1, 1 : n + 1].reshape(-1)
+        """The B-spline of each cell, of the first family."""
+        (m, n), first = self.mesh.shape, self.element.before
+        every = np.arange(len(self.places)).reshape(self._counts)[0]
+        return np.asarray(every[first : first + m, first : first + n].reshape(-1))
 
     @property
-    def _counts(self) -> tuple[int, int]:
-        """B-splines each way."""
-        m, n = self.mesh.shape
-        return m + 1 + self.element.beyond, n + 1 + self.element.beyond
+    def _counts(self) -> tuple[int, int, int]:
+        """Families, and B-splines of each both ways."""
+        (m, n), more = self.mesh.shape, self.element.before + self.element.beyond
+        return len(self.element.centers), m + more, n + more
 
     @cached_property
     def _centers_and_sides(self) -> tuple[Floats, Floats]:
-        lines = self.mesh.x, self.mesh.y
-        sides = [ghosted_sides(v, self.element.beyond) for v in lines]
+        lines, before = (self.mesh.x, self.mesh.y), self.element.before
+        sides = [ghosted_sides(v, self.element.beyond, before) for v in lines]
         lows = [
-            np.concatenate([v[:1] - h[:1], v, v[-1] + np.cumsum(h[len(v) + 1 :])])
+            np.concatenate(
+                [v[0] - np.cumsum(h[:before])[::-1], v, v[-1] + np.cumsum(h[len(v) + before :])]
+            )
             for v, h in zip(lines, sides, strict=True)
         ]
-        middles = [low + self.element.center * h for low, h in zip(lows, sides, strict=True)]
-        centers = np.stack(np.meshgrid(*middles, indexing="ij"), axis=-1).reshape(-1, 2)
-        return centers, np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1).reshape(-1, 2)
+        centers = [
+            _pairs([low + at * h for low, h, at in zip(lows, sides, center, strict=True)])
+            for center in self.element.centers
+        ]
+        return np.concatenate(centers), np.tile(_pairs(sides), (len(centers), 1))
 
     def points(self, bsplines: Ints, offsets: Floats) -> Floats:
         """Places from the centers of B-splines, offsets (k, 2) in cells, as points (k, 2)."""
@@ -97,12 +110,12 @@ class TensorSpace:
 
     def numbers(self, coefficients: Floats) -> Floats:
         """The numbers of all cells from all coefficients."""
-        table = coefficients.reshape(self._counts)
+        table, cells = coefficients.reshape(self._counts), self.mesh.cell_count
         if "tensor" in self.element.spaces:
-            return tensor_ordinates(self.mesh, table)
-        side = self.element.beyond + 2
-        blocks = np.lib.stride_tricks.sliding_window_view(table, (side, side))
-        return self.element.cell_numbers(blocks.reshape(-1, side * side))
+            return tensor_ordinates(self.mesh, table[0])
+        side = self.element.before + 1 + self.element.beyond
+        blocks = np.lib.stride_tricks.sliding_window_view(table, (side, side), axis=(1, 2))
+        return self.element.cell_numbers(np.moveaxis(blocks, 0, 2).reshape(cells, -1))
 
     def refined(self, bad: Ints, quarters: Bools) -> TensorSpace:
         """All cells halved, or the rows and columns of bad ones."""
@@ -130,10 +143,15 @@ class TensorSpace:
         return partial(evaluate_grid, x, y, table)
 
 
-def ghosted_sides(lines: Floats, beyond: int = 1) -> Floats:
-    """Cell sides with one more before and so many beyond them, equal to their neighbors."""
+def _pairs(lines: list[Floats]) -> Floats:
+    """All pairs of one of each of two, (n, 2), the second running first."""
+    return np.asarray(np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2))
+
+
+def ghosted_sides(lines: Floats, beyond: int = 1, before: int = 1) -> Floats:
+    """Cell sides with so many more before and beyond them, equal to their neighbors."""
     sides = np.diff(lines)
-    return np.concatenate([sides[:1], sides, np.repeat(sides[-1:], beyond)])
+    return np.concatenate([np.repeat(sides[:1], before), sides, np.repeat(sides[-1:], beyond)])
 
 
 def tensor_ordinates(mesh: Grid, coefficients: Floats) -> Floats:

@@ -12,7 +12,9 @@ import numpy as np
 from splinesdf.errors import InputError
 from splinesdf.ground.arrays import Floats
 from splinesdf.meshes import Grid
-from splinesdf.spaces.tensor import ghosted_sides, tensor_ordinates
+from splinesdf.spaces.element import Element
+from splinesdf.spaces.space import space_on
+from splinesdf.spaces.tensor import ghosted_sides
 
 if TYPE_CHECKING:
     from splinesdf.splines.spline import SplineSDF
@@ -21,19 +23,21 @@ if TYPE_CHECKING:
 # largest. Smaller: thousands of steps, and sides of many sizes, are refused for their rounding;
 # larger: changed ordinates pass.
 _ROUNDING = 1e-10
+# Elements whose B-splines have at most one dependence; of others there are many coefficients.
+_KNOWN = ("quadratic", "quartic", "cubic")
 
 
 def coefficients(spline: SplineSDF) -> Floats:
-    """The coefficients of the B-splines of a quadratic spline on a grid.
+    """The coefficients of the B-splines of a quadratic, quartic or cubic spline on a grid.
 
     Returns
     -------
-    ndarray, shape (m + 2, n + 2)
-        Entry (i + 1, j + 1) is that of ``splinesdf.splines.quasi.bspline(mesh, i, j)``, i along x
-        and j along y: one of each of the m x n cells, and of the ring around them. The
-        B-splines with (-1)^(i + j) h_i k_j, the sides of their cells, sum to zero, so that the
-        coefficients are known but for a multiple of that: these have none of it, they are
-        orthogonal to it.
+    ndarray, shape (m + 2, n + 2), of a quartic spline (m + 3, n + 3)
+        Entry (i + 1, j + 1) is that of ``splinesdf.splines.quasi.bspline(mesh, i, j, element)``, i
+        along x and j along y: one of each of the m x n cells, and of the ring around them. The
+        quadratic and the quartic B-splines with (-1)^(i + j) h_i k_j, the sides of their cells, sum
+        to zero, so that the coefficients are known but for a multiple of that: these have none of
+        it, they are orthogonal to it.
 
     Raises
     ------
@@ -48,20 +52,58 @@ def coefficients(spline: SplineSDF) -> Floats:
     >>> made.spline.coefficients().shape
     (8, 7)
     """
-    mesh = spline.mesh
-    if not isinstance(mesh, Grid) or "tensor" not in spline.element.spaces:
+    mesh, element = spline.mesh, spline.element
+    if not isinstance(mesh, Grid) or element.name not in _KNOWN:
         raise InputError(
-            "expected a quadratic spline on a grid, whose B-splines have a coefficient a cell, got "
-            f"one of {mesh.description}: make it by interpolate or quasi_interpolate on a Grid"
+            f"expected a spline of the element {', '.join(_KNOWN)} on a grid, whose B-splines have "
+            f"a coefficient a cell, got a {element.name} one of {mesh.description}: make it by "
+            "interpolate or quasi_interpolate on a Grid"
         )
-    found = _found(mesh, spline.ordinates)
-    largest = max(float(np.abs(spline.ordinates).max()), float(np.abs(found).max()))
-    if not np.abs(tensor_ordinates(mesh, found) - spline.ordinates).max() <= _ROUNDING * largest:
+    space = space_on(mesh, element)  # refuses what has no such B-splines there
+    own = spline.ordinates
+    if "tensor" in element.spaces:
+        found = _found(mesh, own)
+    else:
+        found = _found_in_blocks(mesh.shape, element, own)
+    largest = max(float(np.abs(own).max()), float(np.abs(found).max()))
+    if not np.abs(space.numbers(found.reshape(-1)) - own).max() <= _ROUNDING * largest:
         raise InputError(
             "expected a spline of B-splines, got one whose cells do not fit together: its "
             "ordinates were changed, or sides of its cells differ by more than rounding allows"
         )
     return found
+
+
+def _found_in_blocks(shape: tuple[int, int], element: Element, numbers: Floats) -> Floats:
+    """Coefficients on equal cells, from those that reach a cell, by its numbers.
+
+    If (-1)^(i + j) makes no numbers, they are known of each cell but for a multiple of that: with
+    these signs, but for a constant, so that steps from one coefficient to the next are known.
+    """
+    m, n = shape
+    side = element.before + 1 + element.beyond
+    signs = (-1.0) ** np.add.outer(np.arange(m + side - 1), np.arange(n + side - 1))
+    one = signs[:side, :side]
+    blocks = numbers @ np.linalg.pinv(element.from_coefficients).T
+    blocks = blocks.reshape(m, n, side, side)
+    if np.abs(element.from_coefficients @ one.reshape(-1)).max() > _ROUNDING:
+        # Each from a cell in whose middle it is, as far as there is one.
+        p, q = np.arange(m + side - 1)[:, None], np.arange(n + side - 1)
+        i, j = (np.clip(at - side // 2, 0, count - 1) for at, count in ((p, m), (q, n)))
+        return np.asarray(blocks[i, j, p - i, q - j])
+    blocks = blocks * one * signs[:m, :n, None, None]
+    steps = [np.diff(blocks, axis=2), np.diff(blocks, axis=3)]
+    p, q = np.arange(m + side - 2)[:, None], np.arange(n + side - 1)
+    i, j = (np.clip(at - side // 2, 0, count - 1) for at, count in ((p, m), (q, n)))
+    i = np.maximum(i, p - side + 2)
+    middle = (n + side - 1) // 2
+    along_x = steps[0][i, j, p - i, q - j][:, middle : middle + 1]
+    p, q = np.arange(m + side - 1)[:, None], np.arange(n + side - 2)
+    i, j = (np.clip(at - side // 2, 0, count - 1) for at, count in ((p, m), (q, n)))
+    j = np.maximum(j, q - side + 2)
+    along_y = steps[1][i, j, p - i, q - j]
+    d = _summed(along_x, 0) + _summed(along_y.T, middle).T
+    return np.asarray(signs * (d - d.mean()))
 
 
 def _found(mesh: Grid, ordinates: Floats) -> Floats:

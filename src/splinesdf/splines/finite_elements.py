@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from splinesdf.errors import MissingExtraError
+from splinesdf.errors import InputError, MissingExtraError
 from splinesdf.ground.arrays import Floats
 from splinesdf.splines.triangles import Triangles
 
@@ -23,7 +23,7 @@ def to_skfem(spline: SplineSDF) -> tuple[Any, Floats]:
     Raises
     ------
     InputError
-        As `triangles`.
+        If the spline is not quadratic, or as `triangles`.
     MissingExtraError
         Without scikit-fem.
 
@@ -34,6 +34,11 @@ def to_skfem(spline: SplineSDF) -> tuple[Any, Floats]:
     >>> len(vector) == int(basis.N)
     True
     """
+    if spline.element.degree != 2:
+        raise InputError(
+            f"expected a quadratic spline for scikit-fem, got a {spline.element.name} one: fit "
+            'with element="quadratic", or take its triangles()'
+        )
     return skfem_basis(spline.triangles())
 
 

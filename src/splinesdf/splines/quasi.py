@@ -49,23 +49,34 @@ def quasi_interpolate(
     return SplineSDF(mesh, numbers, element=element)
 
 
-def bspline(mesh: Grid, i: int, j: int, element: Element = QUADRATIC) -> SplineSDF:
+def bspline(mesh: Grid, i: int, j: int, element: Element = QUADRATIC, family: int = 0) -> SplineSDF:
     """The B-spline of cell (i, j) of a grid, -1 and m, n being the ring around the domain.
 
     The quadratic one is positive inside an octagon in the 3 x 3 cells around (i, j). That of the
     quartic element, whose ring goes to m + 1, n + 1, has its center in the cell's lower left
     corner, and is positive inside the 4 x 4 cells around that less half a cell in each corner. All
-    of an element's sum to one.
+    of a family of an element sum to one.
+
+    Parameters
+    ----------
+    mesh : Grid
+    i, j : int
+    element : Element
+    family : int
+        Which of the element's, from 0 on; only S31 has three.
 
     References
     ----------
     [Wang2014] Theorem 5 and the 41 values after it.
     """
+    first, families = -element.before, len(element.centers)
+    family = whole(family, "family", least=0, most=families - 1)
     if "tensor" in element.spaces:
         return SplineSDF(mesh, tensor_ordinates(mesh, bspline_coefficients(mesh, i, j)))
     space = space_on(mesh, element)
     last_i, last_j = (int(last) for last in space.places.max(axis=0))
-    i, j = whole(i, "i", least=-1, most=last_i), whole(j, "j", least=-1, most=last_j)
+    i, j = whole(i, "i", least=first, most=last_i), whole(j, "j", least=first, most=last_j)
     coefficients = np.zeros(len(space.places))
-    coefficients[np.all(space.places == (i, j), axis=1)] = 1.0
+    here = np.all(space.places == (i, j), axis=1) & (space.family == family)
+    coefficients[here] = families  # as their mean is taken
     return SplineSDF(mesh, space.numbers(coefficients), element=element)

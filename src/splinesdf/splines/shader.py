@@ -1,4 +1,4 @@
-"""A quadratic spline as GLSL: a function, and the table of numbers that it reads from a texture.
+"""A spline as GLSL: a function, and the table of numbers that it reads from a texture.
 
 The table is `shader_table`'s, whose root cells and nodes the text goes through.
 """
@@ -31,13 +31,7 @@ vec3 {name}_and_gradient(vec2 p) {{
     const vec2 low = {low}, high = {high};
     vec2 q = clamp(p, low, high), away = p - q;
 {locate}
-    vec4 a = {name}_texel(2 * cell), b = {name}_texel(2 * cell + 1);
-    // a.x + a.y s + a.z t + a.w s^2 + b.x s t + b.y t^2 + b.z right^2 + b.w left^2
-    float right = max(st.x - st.y, 0.0), left = max(st.x + st.y, 0.0);
-    float value = a.x + st.x * (a.y + a.w * st.x + b.x * st.y) + st.y * (a.z + b.y * st.y)
-        + b.z * right * right + b.w * left * left;
-    vec2 gradient = 2.0 * vec2(b.z * right + b.w * left, b.w * left - b.z * right)
-        + vec2(a.y + 2.0 * a.w * st.x + b.x * st.y, a.z + b.x * st.x + 2.0 * b.y * st.y);
+{evaluate}
     gradient *= inverse;
     float far = length(away);
     if (far > 0.0) {{
@@ -49,6 +43,36 @@ vec3 {name}_and_gradient(vec2 p) {{
 
 float {name}(vec2 p) {{ return {name}_and_gradient(p).x; }}
 """
+
+# What the numbers of a cell are, by degree.
+_EVALUATE = {
+    2: """\
+    vec4 a = {name}_texel(2 * cell), b = {name}_texel(2 * cell + 1);
+    // a.x + a.y s + a.z t + a.w s^2 + b.x s t + b.y t^2 + b.z right^2 + b.w left^2
+    float right = max(st.x - st.y, 0.0), left = max(st.x + st.y, 0.0);
+    float value = a.x + st.x * (a.y + a.w * st.x + b.x * st.y) + st.y * (a.z + b.y * st.y)
+        + b.z * right * right + b.w * left * left;
+    vec2 gradient = 2.0 * vec2(b.z * right + b.w * left, b.w * left - b.z * right)
+        + vec2(a.y + 2.0 * a.w * st.x + b.x * st.y, a.z + b.x * st.x + 2.0 * b.y * st.y);""",
+    4: """\
+    vec4 a = {name}_texel(4 * cell), b = {name}_texel(4 * cell + 1);
+    vec4 c = {name}_texel(4 * cell + 2), d = {name}_texel(4 * cell + 3);
+    float s = st.x, t = st.y, plus = s + t, minus = s - t;
+    // a.x + a.y s + a.z t + a.w s^2 + b.x s t + b.y t^2 + b.z s^3 + b.w s^2 t + c.x s t^2 + c.y t^3
+    // + c.z s^3 t + c.w s t^3 + d.x (plus^4 + minus^4) + d.y right^4 + d.z left^4
+    float right = max(minus, 0.0), left = max(plus, 0.0);
+    float value = a.x + s * (a.y + s * (a.w + s * (b.z + c.z * t) + b.w * t) + b.x * t)
+        + t * (a.z + t * (b.y + t * (c.y + c.w * s) + c.x * s))
+        + d.x * (plus * plus * plus * plus + minus * minus * minus * minus)
+        + d.y * right * right * right * right + d.z * left * left * left * left;
+    float along = 4.0 * (d.x * plus * plus * plus + d.z * left * left * left);
+    float across = 4.0 * (d.x * minus * minus * minus + d.y * right * right * right);
+    vec2 gradient = vec2(
+        a.y + s * (2.0 * a.w + 3.0 * s * (b.z + c.z * t) + 2.0 * b.w * t)
+            + t * (b.x + t * (c.x + c.w * t)) + along + across,
+        a.z + t * (2.0 * b.y + 3.0 * t * (c.y + c.w * s) + 2.0 * c.x * s)
+            + s * (b.x + s * (b.w + c.z * s)) + along - across);""",
+}
 
 _IN_GRID = """\
     int i = 0, j = 0;
@@ -103,9 +127,9 @@ def to_glsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float
     Raises
     ------
     InputError
-        If the spline is not quadratic, GLSL does not take the name, a texture of 2048 x 2048 does
-        not hold the numbers, or the domain is so far from the origin that float32 does not tell
-        places in it apart.
+        If the spline is neither of the quadratic nor of the quartic element, GLSL does not take
+        the name, a texture of 2048 x 2048 does not hold the numbers, or the domain is so far from
+        the origin that float32 does not tell places in it apart.
 
     Examples
     --------
@@ -127,6 +151,7 @@ def to_glsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float
         wide=WIDE,
         first=told.first,
         locate=locate.format(depth=told.depth, **names),
+        evaluate=_EVALUATE[spline.element.degree].format(**names),
         **names,
     )
     return text, told.table

@@ -1,7 +1,7 @@
-"""The numbers of a quadratic spline as shaders read them: float32, four a texel, in whole rows.
+"""The numbers of a spline as shaders read them: float32, four a texel, in whole rows.
 
-    cells ──power form, float32──> two texels a cell ────────┐
-    mesh ──lines, or nodes of the tree──> four numbers a texel ┴─> table (rows, 2048, 4)
+    cells ──power form, float32──> two texels a cell, or four ┐
+    mesh ──lines, or nodes of the tree──> four numbers a texel ┴──> table (rows, 2048, 4)
                                                 where these begin ──> text of a function
 
 The numbers are in a texture or a buffer, as compilers take seconds for some hundred cells in the
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from splinesdf.splines.spline import SplineSDF
 
 # Texels in a row of the table, and rows: the size of texture that all of WebGL2 has. More: a phone
-# refuses the table; fewer: fits that would do are refused. It is room for 1.8 million cells.
+# refuses the table; fewer: fits that would do are refused. It is room for 1.8 million
+# cells, quartic ones half as many.
 WIDE, _HIGH = 2048, 2048
 
 
@@ -36,7 +37,7 @@ class ShaderTable(NamedTuple):
     ----------
     table : ndarray of float32, shape (rows, 2048, 4)
     first : int
-        Texel at which the numbers of the index begin, after two for each cell.
+        Texel at which the numbers of the index begin, after two (degree 4: four) for each cell.
     way : {"tree", "equal", "lines"}
         Nodes of a quadtree, equal cells (no numbers), or the lines of a grid.
     counts : (int, int)
@@ -54,11 +55,13 @@ class ShaderTable(NamedTuple):
 
 def shader_table(spline: SplineSDF) -> ShaderTable:
     """The table of a spline, or an `InputError` if float32 or a texture does not hold it."""
-    if spline.element.degree != 2:
+    if spline.element.power_form is None:
         raise InputError(
-            f"expected a quadratic spline for shaders, got a {spline.element.name} one"
+            f"expected a quadratic or quartic spline for shaders, got a {spline.element.name} one"
         )
     mesh, powers = spline.mesh, spline.element.table(spline.ordinates)
+    # Fifteen numbers of the quartic element and a zero.
+    powers = np.pad(powers, [(0, 0), (0, -powers.shape[1] % 4)])
     assert isinstance(mesh, Grid | Quadtree)
     corners(mesh.domain)  # refuses what is too far from the origin
     depth, numbers = 0, np.empty(0)
@@ -68,7 +71,7 @@ def shader_table(spline: SplineSDF) -> ShaderTable:
         numbers = np.where(mesh.child >= 0, mesh.child, -1 - mesh.cell_of).astype(np.float64)
     elif not mesh.is_uniform:
         way, numbers = "lines", np.concatenate([_lines(mesh.x, "x"), _lines(mesh.y, "y")])
-    return ShaderTable(_table(powers, numbers), 2 * len(powers), way, mesh.shape, depth)
+    return ShaderTable(_table(powers, numbers), powers.size // 4, way, mesh.shape, depth)
 
 
 def _lines(lines: Floats, axis: str) -> Floats:
@@ -81,8 +84,8 @@ def _lines(lines: Floats, axis: str) -> Floats:
 
 
 def _table(powers: Floats, numbers: Floats) -> NDArray[np.float32]:
-    """Two texels a cell, then four numbers a texel, in whole rows."""
-    count = 2 * len(powers) + -(-len(numbers) // 4)
+    """The texels of the cells, then four numbers a texel, in whole rows."""
+    count = powers.size // 4 + -(-len(numbers) // 4)
     rows = -(-count // WIDE)
     if rows > _HIGH:
         raise InputError(

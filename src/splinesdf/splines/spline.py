@@ -91,8 +91,8 @@ class SplineSDF:
     made : Provenance or None
         From what request it was made, and how well it answers it.
     element : Element
-        What its B-splines are, see ``splinesdf.spaces``: quadratic unless given. Cubic and quartic
-        splines are not drawn by shaders and pages, nor cut into quadratic triangles.
+        What its B-splines are, see ``splinesdf.spaces``: quadratic unless given. Others are not
+        drawn by pages, nor, but for quartic ones, by shaders.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""`Triangles`: a spline as a conforming mesh of quadratic triangles, for other software.
+"""`Triangles`: a spline as a conforming mesh of Lagrange triangles, for other software.
 
-Each of a cell's four triangles is one quadratic; where vertices of finer cells hang on its side, it
-is cut into a fan from the cell's center to them. A part of a quadratic is the same quadratic, so
-nothing is approximated:
+Each of a cell's four triangles is one polynomial, here a quadratic (`lagrange` has the others);
+where vertices of finer cells hang on its side, it is cut into a fan from the cell's center to them.
+A part of a polynomial is the same one, so nothing is approximated:
 
     V ─ e ─ V ─ e ─ V        V  vertices, each once however many cells meet there
       s     s     s          e  edge middles, each once for both cells
@@ -25,6 +25,7 @@ from splinesdf.meshes import Mesh
 from splinesdf.meshes.mesh import SQUARABLE
 from splinesdf.spaces.element import Element
 from splinesdf.spaces.space import space_on
+from splinesdf.splines.lagrange import Fans, lagrange_nodes
 
 if TYPE_CHECKING:
     from splinesdf.splines.spline import SplineSDF
@@ -41,15 +42,16 @@ _FORWARD = np.array([1, 1, -1, -1])
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """A conforming mesh of quadratic Lagrange triangles, and a function's values at its nodes.
+    """A conforming mesh of Lagrange triangles, and a function's values at its nodes.
 
     Attributes
     ----------
     points : ndarray, shape (n, 2)
-        Nodes, each once: first all corners of triangles, then all middles of edges.
-    triangles : ndarray, shape (m, 6)
-        Nodes of each triangle: its corners p, q, r, counterclockwise as x turns into y, then the
-        middles of pq, qr and rp, which is VTK's order of a quadratic triangle.
+        Nodes, each once: first all corners of triangles, then those on edges, then those within.
+    triangles : ndarray, shape (m, 6), of cubics (m, 10), of quartics (m, 15)
+        Nodes of each triangle: its corners p, q, r, counterclockwise as x turns into y; then the
+        middles of pq, qr and rp, or the nodes that divide each of them evenly, from its first
+        corner; then those within. It is VTK's order of a quadratic or a Lagrange triangle.
     values : ndarray, shape (n,)
         At the nodes.
 
@@ -72,6 +74,11 @@ class Triangles:
         )
         return brief("Triangles", "", triangles, nodes)
 
+    @property
+    def degree(self) -> int:
+        """Of the polynomials: 2, 3 or 4."""
+        return {6: 2, 10: 3, 15: 4}[self.triangles.shape[1]]
+
 
 class _Vertices(NamedTuple):
     """The corners of all cells, each once, in columns from left to right, upward in each."""
@@ -92,7 +99,7 @@ class _Pieces(NamedTuple):
 
 
 def triangles(spline: SplineSDF) -> Triangles:
-    """The spline as a conforming mesh of quadratic Lagrange triangles, exact to rounding.
+    """The spline as a conforming mesh of Lagrange triangles of its degree, exact to rounding.
 
     Four triangles a cell, more where cells of a quadtree have smaller neighbors: there a
     triangle is a fan from the cell's center to their corners. No node hangs on an edge.
@@ -100,7 +107,7 @@ def triangles(spline: SplineSDF) -> Triangles:
     Raises
     ------
     InputError
-        If the spline is cubic, not finite, or not continuous (fits are).
+        If the spline is not finite, or not continuous (fits are).
 
     Examples
     --------
@@ -108,22 +115,17 @@ def triangles(spline: SplineSDF) -> Triangles:
     >>> ss.interpolate(ss.example("gamma1"), (4, 4)).spline.triangles()
     <Triangles: 64 triangles, 145 nodes>
     """
-    return _quadratic_triangles(spline.mesh, spline.element, spline.ordinates)
+    return _lagrange_triangles(spline.mesh, spline.element, spline.ordinates)
 
 
-def _quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Triangles:
-    """The mesh of a spline of degree 2.
+def _lagrange_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Triangles:
+    """The mesh of a spline.
 
     Raises
     ------
     InputError
-        If the spline is of another degree, not finite or beyond 1e100, or not continuous.
+        If the spline is not finite or beyond 1e100, or not continuous.
     """
-    if element.degree != 2:
-        raise InputError(
-            f"expected a quadratic spline for quadratic triangles, got a {element.name} one: fit "
-            'with element="quadratic", or save it as .npz or .json'
-        )
     space_on(mesh, element)  # refuses what is no mesh
     if len(numbers) != mesh.cell_count:
         raise InputError(f"expected ordinates of {mesh.cell_count} cells, got of {len(numbers)}")
@@ -136,6 +138,21 @@ def _quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Trian
     keys = np.minimum(first, last) * count + np.maximum(first, last)
     _, one, edge = np.unique(keys, return_index=True, return_inverse=True)
 
+    low, high = vertices.points[vertices.number[:, 0]], vertices.points[vertices.number[:, 2]]
+    centers = low + 0.5 * (high - low)
+    if element.degree > 2:
+        fans = Fans(
+            np.concatenate([vertices.points, centers]),
+            np.column_stack([first, last, count + cell]),
+            pieces.part,
+            pieces.following,
+            edge,
+        )
+        every = element.ordinates(numbers)
+        every = every.reshape(-1, every.shape[2])[pieces.side]
+        nodes, of_each, values, apart = lagrange_nodes(element.degree, every, fans)
+        _check_together(apart, every)
+        return Triangles(nodes, of_each, values)
     ordinates = element.ordinates(numbers).reshape(-1, 6)[pieces.side]
     at_start = _on_side(ordinates, pieces.part[:, 0])
     at_middle = _on_side(ordinates, pieces.part.mean(axis=1))
@@ -145,14 +162,8 @@ def _quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Trian
         float(np.max(np.abs(at_start - at_vertex[first]))),
         float(np.max(np.abs(at_middle - at_middle[one][edge]))),
     )
-    if apart > _APART * float(np.max(np.abs(ordinates))):
-        raise InputError(
-            "expected a continuous spline, as fits are, got ordinates by which cells are "
-            f"{apart:.3g} apart along a common side"
-        )
+    _check_together(apart, ordinates)
     xy = vertices.points
-    low, high = xy[vertices.number[:, 0]], xy[vertices.number[:, 2]]
-    centers = low + 0.5 * (high - low)
     edges = 0.5 * (xy[first[one]] + xy[last[one]])
     spokes = 0.5 * (xy[first] + centers[cell])
 
@@ -165,6 +176,14 @@ def _quadratic_triangles(mesh: Mesh, element: Element, numbers: Floats) -> Trian
         np.column_stack([first, last, center, middle, spoke[pieces.following], spoke]),
         np.concatenate([at_vertex, at_center, at_middle[one], _on_spoke(ordinates, pieces)]),
     )
+
+
+def _check_together(apart: float, ordinates: Floats) -> None:
+    if apart > _APART * float(np.max(np.abs(ordinates))):
+        raise InputError(
+            "expected a continuous spline, as fits are, got ordinates by which cells are "
+            f"{apart:.3g} apart along a common side"
+        )
 
 
 def _vertices(mesh: Mesh) -> _Vertices:

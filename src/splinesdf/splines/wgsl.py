@@ -1,4 +1,4 @@
-"""A quadratic spline as WGSL: a function, and the table of numbers that it reads from a buffer.
+"""A spline as WGSL: a function, and the table of numbers that it reads from a buffer.
 
 As `shader` does for GLSL, from the same table; a storage buffer has no rows and no filter.
 """
@@ -34,15 +34,7 @@ fn {name}_and_gradient(p: vec2f) -> vec3f {{
     let q = clamp(p, low, high);
     let away = p - q;
 {locate}
-    let a = {name}_table[2 * cell];
-    let b = {name}_table[2 * cell + 1];
-    // a.x + a.y s + a.z t + a.w s^2 + b.x s t + b.y t^2 + b.z right^2 + b.w left^2
-    let right = max(st.x - st.y, 0.0);
-    let left = max(st.x + st.y, 0.0);
-    let value = a.x + st.x * (a.y + a.w * st.x + b.x * st.y) + st.y * (a.z + b.y * st.y)
-        + b.z * right * right + b.w * left * left;
-    var gradient = 2.0 * vec2f(b.z * right + b.w * left, b.w * left - b.z * right)
-        + vec2f(a.y + 2.0 * a.w * st.x + b.x * st.y, a.z + b.x * st.x + 2.0 * b.y * st.y);
+{evaluate}
     gradient *= inverse;
     let far = length(away);
     if (far > 0.0) {{
@@ -55,6 +47,44 @@ fn {name}(p: vec2f) -> f32 {{
     return {name}_and_gradient(p).x;
 }}
 """
+
+# What the numbers of a cell are, by degree.
+_EVALUATE = {
+    2: """\
+    let a = {name}_table[2 * cell];
+    let b = {name}_table[2 * cell + 1];
+    // a.x + a.y s + a.z t + a.w s^2 + b.x s t + b.y t^2 + b.z right^2 + b.w left^2
+    let right = max(st.x - st.y, 0.0);
+    let left = max(st.x + st.y, 0.0);
+    let value = a.x + st.x * (a.y + a.w * st.x + b.x * st.y) + st.y * (a.z + b.y * st.y)
+        + b.z * right * right + b.w * left * left;
+    var gradient = 2.0 * vec2f(b.z * right + b.w * left, b.w * left - b.z * right)
+        + vec2f(a.y + 2.0 * a.w * st.x + b.x * st.y, a.z + b.x * st.x + 2.0 * b.y * st.y);""",
+    4: """\
+    let a = {name}_table[4 * cell];
+    let b = {name}_table[4 * cell + 1];
+    let c = {name}_table[4 * cell + 2];
+    let d = {name}_table[4 * cell + 3];
+    let s = st.x;
+    let t = st.y;
+    let plus = s + t;
+    let minus = s - t;
+    // a.x + a.y s + a.z t + a.w s^2 + b.x s t + b.y t^2 + b.z s^3 + b.w s^2 t + c.x s t^2 + c.y t^3
+    // + c.z s^3 t + c.w s t^3 + d.x (plus^4 + minus^4) + d.y right^4 + d.z left^4
+    let right = max(minus, 0.0);
+    let left = max(plus, 0.0);
+    let value = a.x + s * (a.y + s * (a.w + s * (b.z + c.z * t) + b.w * t) + b.x * t)
+        + t * (a.z + t * (b.y + t * (c.y + c.w * s) + c.x * s))
+        + d.x * (plus * plus * plus * plus + minus * minus * minus * minus)
+        + d.y * right * right * right * right + d.z * left * left * left * left;
+    let along = 4.0 * (d.x * plus * plus * plus + d.z * left * left * left);
+    let across = 4.0 * (d.x * minus * minus * minus + d.y * right * right * right);
+    var gradient = vec2f(
+        a.y + s * (2.0 * a.w + 3.0 * s * (b.z + c.z * t) + 2.0 * b.w * t)
+            + t * (b.x + t * (c.x + c.w * t)) + along + across,
+        a.z + t * (2.0 * b.y + 3.0 * t * (c.y + c.w * s) + 2.0 * c.x * s)
+            + s * (b.x + s * (b.w + c.z * s)) + along - across);""",
+}
 
 _IN_GRID = """\
     var i = 0;
@@ -138,6 +168,7 @@ def to_wgsl(spline: SplineSDF, name: str = "sdf") -> tuple[str, NDArray[np.float
         rows=len(told.table),
         first=told.first,
         locate=locate.format(depth=told.depth, **names),
+        evaluate=_EVALUATE[spline.element.degree].format(**names),
         **names,
     )
     return text, told.table

@@ -1,4 +1,4 @@
-"""A field on quadratic triangles as VTK XML (.vtu), which ParaView, PyVista and meshio read."""
+"""A field on Lagrange triangles as VTK XML (.vtu), which ParaView, PyVista and meshio read."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from splinesdf.splines.spline import SplineSDF
 from splinesdf.splines.triangles import Triangles
 
-# VTK's number of the cell with nodes at three corners and in the middles of three edges.
-_QUADRATIC_TRIANGLE = 22
+# VTK's numbers of the cell with nodes at three corners and in the middles of three edges, and of
+# that with so many nodes as its degree takes.
+_QUADRATIC_TRIANGLE, _LAGRANGE_TRIANGLE = 22, 69
 _TYPES = {"f8": "Float64", "i8": "Int64", "u1": "UInt8"}
 _HEAD = (
     '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" '
@@ -60,7 +61,8 @@ def _parts(mesh: Triangles, facts: Mapping[str, float]) -> Iterator[bytes]:
     yield b"</Points>\n<Cells>\n"
     yield from _array("connectivity", mesh.triangles)
     yield from _array("offsets", np.arange(1, count + 1) * size)
-    yield from _array("types", np.full(count, _QUADRATIC_TRIANGLE, dtype=np.uint8))
+    kind = _QUADRATIC_TRIANGLE if mesh.degree == 2 else _LAGRANGE_TRIANGLE
+    yield from _array("types", np.full(count, kind, dtype=np.uint8))
     yield b"</Cells>\n</Piece>\n"
     yield _TAIL.encode()
 
