@@ -182,6 +182,11 @@ def test_refused_before_any_work(changed: dict[str, Any], message: str) -> None:
     assert [path for path in Path("out").iterdir() if path.name != FOLDER] == []
 
 
+def test_options_of_writing_where_there_are_none() -> None:
+    with pytest.raises(ss.InputError, match="expected no options of writing for grid"):
+        ss.batch(disks(1), "grid", "out/{name}.npz", nx=5, writing={"units": "mm"})
+
+
 def test_names_that_differ_by_case_only(monkeypatch: pytest.MonkeyPatch) -> None:
     two = [ss.Shape.circle((0, 0), 1, name=name) for name in ("a", "A")]
     monkeypatch.setattr("splinesdf.batches.batch.folds_case", lambda _: True)
@@ -262,9 +267,11 @@ def test_digests_tell_values_apart() -> None:
         *(1, 1.0, True, "1", None, [1], (1,), {"a": 1}, {"b": 1}, b"1", -0.0, 0.0),
         *(np.array([1.0]), np.array([1]), np.array([[1.0]]), np.float64(2.0), ["ab"], ["a", "b"]),
         *(shape, shape.translate(1e-9, 0.0), ss.Limits(), ss.Limits(pieces=7), ss.Milling()),
+        *(Path("a"), Path("b"), "a"),
     ]
     digests = [digest_of(value) for value in values]
     assert len(set(digests)) == len(values)
+    assert digest_of(Path("a")) == digest_of(Path("a"))
     assert digest_of({"a": 1, "b": 2}) == digest_of({"b": 2, "a": 1})
     assert digest_of(gamma("gamma1")) == digest_of(shape)
     for bad in (len, object(), np.array([object()]), [len]):

@@ -109,7 +109,7 @@ def file_digest(path: Path) -> str | None:
         with path.open("rb") as file:
             while part := file.read(_BLOCK):
                 digest.update(part)
-    except (OSError, ValueError):
+    except OSError:
         return None
     return digest.hexdigest()
 
