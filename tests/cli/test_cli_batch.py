@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -77,6 +78,13 @@ def test_options(run: Run, asked: list[Any]) -> None:
     assert asked.pop() == ((files, "grid", "{name}.x"), told)
     run("write", *usual, "--tolerance", "0", "--arcs", "--units", "mm")
     assert asked.pop()[1]["writing"] == {"tolerance": 0.0, "arcs": True, "units": "mm"}
+
+
+def test_help_lists_the_jobs_in_the_order_of_their_sentence(run: Run) -> None:
+    status, printed, _ = run("--help")
+    assert status == 0
+    jobs = re.findall(r"^  (offset|fit|grid|write) ", printed, re.MULTILINE)
+    assert jobs == ["offset", "fit", "grid", "write"]
 
 
 def test_interrupted(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,9 +3,16 @@
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+import shapely
+
+import splinesdf as ss
+from splinesdf.cli import pocket
+from splinesdf.offsets.pocket import cleared as as_it_is
 
 Run = Callable[..., tuple[int, str, str]]
 PLATE = ""  # the part that comes with the package
@@ -46,6 +53,32 @@ def test_a_pocket_is_cleared_in_every_file(run: Run, name: str) -> None:
     assert f"{name} clears all that the tool reaches" in err
     assert re.search(r"note: \d+ paths clear what rings leave", err)
     assert json.loads(out)["offsets"][0]["distance"] == -3.0
+
+
+def test_a_pocket_that_leaves_something_fails_its_check(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its corners: what clears them is lost. The figures are those of the paths' polylines."""
+    paths = list[ss.Contour]()
+
+    def cleared(*arguments: Any) -> ss.Pocket:
+        found = replace(as_it_is(*arguments), extra=())
+        paths.extend(found)
+        return found
+
+    monkeypatch.setattr(pocket, "cleared", cleared)
+    (tmp_path / "square.csv").write_text("0,0\n40,0\n40,40\n0,40\n")
+    tool = ("--tool-diameter", "6", "--stepover", "5.6", "--tolerance", "0.02")
+    status, _, err = run("square.csv", "-o", "a.nc", *tool, "--check")
+    assert status == 1
+    assert "clear what rings leave" not in err
+    found = re.search(r"but \((.*), (.*)\) of the shape is (\S+) farther from all paths", err)
+    assert found is not None
+    *point, left = map(float, found.groups())
+    lines = [shapely.LinearRing(path.points(1e-3)) for path in paths]
+    away = shapely.distance(shapely.Point(point), lines).min()
+    assert left == pytest.approx(away - 3.0, abs=5e-3)
+    assert left > 0.02
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import shapely
 
 import splinesdf as ss
 from splinesdf.io.remeasured import Worst, measure_file
+from tests.chains import circle, line
 
 TOLERANCE = 0.01
 RADIUS = 1.5
@@ -91,6 +93,16 @@ def test_a_ramp_goes_down_along_the_contour(
             assert fall.sum() / way.sum() == pytest.approx(steepest, rel=1e-3)
     passes = [points for name, points in found if name.startswith("pass")]
     assert all(np.ptp(points[points[:, 2] <= points[:, 2].min(), 2]) == 0.0 for points in passes)
+
+
+def test_a_ramp_ends_at_its_depth_where_its_last_move_is_all_rounding(tmp_path: Path) -> None:
+    """A side takes all of it but 0.00003, which four decimals do not tell from nothing."""
+    milling = ss.Milling(feed=9, depth=1.00003, ramp=45.0)
+    ring = replace(line(0j, 1 + 0j, 1 + 1j, 1j, closed=True), distance=-0.1)
+    ss.write(tmp_path / "a.nc", [ring], tolerance=0.01, milling=milling)
+    ramp, rest = (tmp_path / "a.nc").read_text().split("(pass 1 of 1)\n")
+    assert re.findall(r"Z(\S+)", ramp)[-2:] == ["-1", "-1.00003"]
+    assert "Z" not in rest.split("G0")[0]
 
 
 def test_a_ramp_around_a_short_contour_is_steeper_and_that_is_said(tmp_path: Path) -> None:
@@ -179,6 +191,7 @@ def swapped(text: str, pattern: str, new: str) -> str:
     return re.sub(pattern, new, text, count=1, flags=re.MULTILINE)
 
 
+PASS = r"^\(pass 1 of 1\)\n(.*\n)*?(?=\(lead out)"
 TABS = {"tabs": 3, "tab_width": 2.0, "tab_height": 1.0}
 
 
@@ -193,6 +206,8 @@ TABS = {"tabs": 3, "tab_width": 2.0, "tab_height": 1.0}
         ({"ramp": 3.0}, r"^(\(ramp\)\n\S+ \S+ \S+ Z)\S+", r"\1-2.9", "steeper than 3 degrees"),
         (TABS, r"^G1 Z-2 F300\n", "", "has 2 tabs, expected 3"),
         (TABS, r"^G1 Z-2 F300\n", "G1 Z-2.5 F300\n", "has a tab up to Z-2.5, expected -2"),
+        (TABS, r"^G1 X61.5 Y-7.54794$", "G1 X61.5 Y-10", "has a tab over 2.54794, expected 5"),
+        ({"lead": 2.0}, PASS, "", "contour 1 has ways into it, and no pass"),
     ],
 )
 def test_the_check_sees_what_is_wrong(
@@ -203,6 +218,25 @@ def test_the_check_sees_what_is_wrong(
     worst = measured(tmp_path, swapped(text, pattern, new), **asked)
     assert not worst.keeps(TOLERANCE)
     assert any(says in fault for fault in worst.faults), worst.faults
+
+
+def test_a_lead_into_a_path_between_rings_stays_within_the_walls_path(tmp_path: Path) -> None:
+    """It may be nearer to the wall than its path, which is nowhere nearer than 12 to it."""
+    square = ss.Shape.from_points([[0, 0], [40, 0], [40, 40], [0, 40]])
+    wall = ss.offset(square, -3.0, tolerance=1e-3)
+    paths = [*wall, circle(8.0, (20.0, 20.0), distance=-12.0)]
+    ss.write(tmp_path / "a.nc", paths, tolerance=5e-3, milling=ss.Milling(feed=9, lead=2.0))
+    text = (tmp_path / "a.nc").read_text()
+
+    def faults(way: str) -> tuple[str, ...]:
+        lead = r"(\(distance -12.0\)\n(?:.*\n)*?\(lead in\)\n)G3 (\S+ \S+) .*"
+        (tmp_path / "a.nc").write_text(swapped(text, lead, rf"\1G1 X20 {way}\nG1 \2"))
+        levels = [-12.0, -3.0]
+        return measure_file(tmp_path / "a.nc", square, levels, TOLERANCE, clearing={-12.0}).faults
+
+    assert faults("Y5") == ()
+    (fault,) = faults("Y1")
+    assert re.match(r"a lead of contour \d, at Z0, is 2 from where it may be", fault)
 
 
 @pytest.mark.parametrize(

@@ -173,13 +173,15 @@ def moved(text: str, number: int, lost: bool) -> str:
     return "(distance ".join(blocks)
 
 
-def test_the_check_sees_a_beam_that_is_off_or_stays_on(tmp_path: Path) -> None:
+def test_the_check_sees_a_beam_that_is_off_or_stays_on_or_is_lifted(tmp_path: Path) -> None:
     asked = {"laser_power": 700.0}
     text = written(tmp_path, **asked)
     off = measured(tmp_path, dropped(text, r"^M3 S700\n", 1), **asked)
     assert any("with the beam off" in fault for fault in off.faults)
     on = measured(tmp_path, dropped(text, r"^M5\n", 2), **asked)
     assert any("goes quickly through the material" in fault for fault in on.faults)
+    high = measured(tmp_path, text.replace("M5\n", "M5\nG0 Z5\n", 1), **asked)
+    assert any("moves in Z, which a laser has not" in fault for fault in high.faults)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 import splinesdf as ss
+from splinesdf.io import clearance
 from splinesdf.io.clearance import left_by
 from splinesdf.io.remeasured import measure_file
 from splinesdf.io.source_frame import Told
@@ -172,6 +173,20 @@ def test_the_check_of_a_file_sees_what_is_left(tmp_path: Path) -> None:
         ss.write(tmp_path / "a.nc", kept, tolerance=0.01)
         left = left_by(tmp_path / "a.nc", shape, 3.0, 0.02, Told(), kept).left
         assert (left <= 0.0) == (len(kept) == len(list(found)))
+
+
+def test_a_check_that_would_not_end_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    square = ss.Shape.from_points([[0, 0], [40, 0], [40, 40], [0, 40]])
+    found = list(ss.pocket(square, 6.0, 2.5, tolerance=0.01))
+    ss.write(tmp_path / "a.nc", found, tolerance=0.01)
+    asked = left_by(tmp_path / "a.nc", square, 3.0, 0.02, Told(), found).asked
+    monkeypatch.setattr(clearance, "_MOST", asked)
+    assert left_by(tmp_path / "a.nc", square, 3.0, 0.02, Told(), found).left <= 0.0
+    monkeypatch.setattr(clearance, "_MOST", asked - 1)
+    with pytest.raises(ss.InputError, match=f"that {asked - 1:,} points .* 0.02 needs more: raise"):
+        left_by(tmp_path / "a.nc", square, 3.0, 0.02, Told(), found)
 
 
 def test_paths_between_rings_are_measured(tmp_path: Path) -> None:

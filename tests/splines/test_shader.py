@@ -28,6 +28,16 @@ def test_a_name_that_glsl_refuses(name: object) -> None:
             owner.to_glsl(name)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    "name", ["", "2d", "a b", "gl_sdf", "a__b", "fn", "vec2f", "ä", "a" * 41, 3, None, "a;"]
+)
+def test_a_name_that_wgsl_refuses(name: object) -> None:
+    spline = flat(Grid.uniform(UNIT, 2, 2))
+    assert "fn half(" in spline.to_wgsl("half")[0]  # which GLSL has a use for
+    with pytest.raises(ss.InputError, match="expected a name of letters"):
+        spline.to_wgsl(name)  # type: ignore[arg-type]
+
+
 def test_numbers_are_in_the_table() -> None:
     spline = ss.fit(gamma("gamma2"), tolerance=1e-2).spline
     code, table = spline.to_glsl()

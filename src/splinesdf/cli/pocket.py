@@ -51,11 +51,12 @@ def proved(
         note(f"note: {output} clears all that the tool reaches, by {found.asked:,} points")
         return worst
     x, y = found.point
+    farther = found.left + 0.5 * tolerance
     return replace(
         worst,
         faults=(
             *worst.faults,
-            f"expected all to be cleared, but ({x:.9g}, {y:.9g}) of the shape is {found.left:.4g} "
+            f"expected all to be cleared, but ({x:.9g}, {y:.9g}) of the shape is {farther:.4g} "
             "farther from all paths than the tool's radius",
         ),
     )

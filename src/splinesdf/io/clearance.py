@@ -38,7 +38,8 @@ class Cleared(NamedTuple):
     asked : int
         Points whose distance was asked.
     left : float
-        How much farther than the radius the farthest point is, at most 0 if nothing is left.
+        How much farther than the radius and half the tolerance the farthest point is, at most 0 if
+        nothing is left.
     point : (float, float)
         That point, in the shape's coordinates.
     """
