@@ -44,7 +44,10 @@ def test_the_longest_path_has_ends(run: Run) -> None:
     assert (status, out) == (2, "")
     assert err.endswith("an axis with two ends for --longest: this one has loops\n")
     assert not Path("a.svg").exists()
-    for asked, count, length in (((), 5, 2.0 + 4.0 * 2.0**0.5), (("--longest",), 3, 2.0 + 8.0**0.5)):
+    for asked, count, length in (
+        ((), 5, 2.0 + 4.0 * 2.0**0.5),
+        (("--longest",), 3, 2.0 + 8.0**0.5),
+    ):
         assert run("axis", "bar.svg", *asked, "-o", "a.csv")[0] == 0
         rows = np.loadtxt("a.csv", delimiter=",", skiprows=1)
         lines = [rows[rows[:, 0] == k, 2:] for k in range(count)]

@@ -12,7 +12,7 @@ import shapely
 
 import splinesdf as ss
 from splinesdf.io.remeasured import Worst, measure_file
-from tests.chains import circle, line
+from tests import chains
 
 TOLERANCE = 0.01
 RADIUS = 1.5
@@ -98,7 +98,7 @@ def test_a_ramp_goes_down_along_the_contour(
 def test_a_ramp_ends_at_its_depth_where_its_last_move_is_all_rounding(tmp_path: Path) -> None:
     """A side takes all of it but 0.00003, which four decimals do not tell from nothing."""
     milling = ss.Milling(feed=9, depth=1.00003, ramp=45.0)
-    ring = replace(line(0j, 1 + 0j, 1 + 1j, 1j, closed=True), distance=-0.1)
+    ring = replace(chains.line(0j, 1 + 0j, 1 + 1j, 1j, closed=True), distance=-0.1)
     ss.write(tmp_path / "a.nc", [ring], tolerance=0.01, milling=milling)
     ramp, rest = (tmp_path / "a.nc").read_text().split("(pass 1 of 1)\n")
     assert re.findall(r"Z(\S+)", ramp)[-2:] == ["-1", "-1.00003"]
@@ -224,7 +224,7 @@ def test_a_lead_into_a_path_between_rings_stays_within_the_walls_path(tmp_path: 
     """It may be nearer to the wall than its path, which is nowhere nearer than 12 to it."""
     square = ss.Shape.from_points([[0, 0], [40, 0], [40, 40], [0, 40]])
     wall = ss.offset(square, -3.0, tolerance=1e-3)
-    paths = [*wall, circle(8.0, (20.0, 20.0), distance=-12.0)]
+    paths = [*wall, chains.circle(8.0, (20.0, 20.0), distance=-12.0)]
     ss.write(tmp_path / "a.nc", paths, tolerance=5e-3, milling=ss.Milling(feed=9, lead=2.0))
     text = (tmp_path / "a.nc").read_text()
 
