@@ -18,6 +18,36 @@ def test_walls_of_a_plate_with_a_hole() -> None:
         assert np.hypot(*(place.feet[1] - place.feet[0])) == pytest.approx(place.width, abs=1e-12)
 
 
+def test_a_ring_is_narrowest_where_its_hole_is_nearest() -> None:
+    """Around a closed edge, which may begin anywhere; also outside, where one has no vertices."""
+    for angle in (0.0, 1.0, 2.0, 4.0):
+        hole = np.array([np.cos(angle), np.sin(angle)])
+        (place,) = ss.thickness(ss.Shape.circle((0, 0), 3) - ss.Shape.circle(tuple(hole), 1))
+        assert place.width == pytest.approx(1.0, abs=1e-12)
+        np.testing.assert_allclose(place.point, 2.5 * hole, atol=1e-6)
+        x, y = place.point
+        assert repr(place) == f"<Narrow: 1 at ({x:.6g}, {y:.6g})>"
+    ring = ss.Shape.circle((0, 0), 2) - ss.Shape.circle((0, 0), 1.5)
+    around = ring | ss.Shape.circle((0.25, 0), 0.5)
+    (place,) = ss.thickness(around, side="outside")
+    assert place.width == pytest.approx(0.75, abs=1e-12)
+    (edge,) = ss.medial_axis(around, side="outside").edges
+    assert (edge.start, edge.end) == (-1, -1)
+    assert [2.0 * edge.smallest, 2.0 * edge.largest] == pytest.approx([0.75, 1.25], abs=1e-9)
+
+
+def test_what_is_refused() -> None:
+    plate = ss.Shape.rectangle(0, 0, 4, 2)
+    with pytest.raises(ss.InputError, match='side "inside" or "outside", got'):
+        ss.thickness(plate, side="left")  # type: ignore[arg-type]
+    with pytest.raises(ss.InputError, match='domain with side="outside" only'):
+        ss.thickness(plate, domain=(0, 0, 9, 9))
+    least = 4.0 * ss.medial_axis(plate).length / 1e6
+    assert ss.local_thickness(plate, [2.0, 0.5], tolerance=1.001 * least) == pytest.approx(2.0)
+    with pytest.raises(ss.InputError, match=f"at least {least:.2g}, which takes 1,000,000 disks"):
+        ss.local_thickness(plate, [2.0, 0.5], tolerance=0.999 * least)
+
+
 def test_channels_between_disks() -> None:
     shape = ss.Shape.circle((0, 0), 1) | ss.Shape.circle((3, 0), 1) | ss.Shape.circle((0, 5), 1)
     found = ss.thickness(shape, side="outside")

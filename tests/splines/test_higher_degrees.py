@@ -8,6 +8,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.spaces.elements import ELEMENTS
+from splinesdf.splines.level_sets import followed
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 from tests import naive_tree
@@ -98,6 +99,17 @@ def test_contours_without_a_bound_want_a_tolerance() -> None:
         spline.contours(0.3, tolerance=1e-18)
     with pytest.raises(ss.InputError, match="tolerance"):
         spline.contours(0.3, tolerance=-1.0)
+
+
+@pytest.mark.parametrize(("ceiling", "value"), [("_MOST_CELLS", 154), ("_ROUNDS", 1)])
+def test_contours_that_too_many_cells_would_follow_are_refused(
+    ceiling: str, value: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The mesh has 154 cells, and one round is not enough: nothing that is worse is returned."""
+    spline = wavy("cubic")
+    monkeypatch.setattr(followed, ceiling, value)
+    with pytest.raises(ss.InputError, match="cells can follow, got others: raise their tolerance"):
+        spline.contours(0.3, tolerance=1e-3)
 
 
 @pytest.mark.parametrize("element", ["cubic", "quartic"])

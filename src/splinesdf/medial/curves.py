@@ -196,11 +196,10 @@ def _through(pool: Pool, arcs: Floats, weight: Floats, first: Ints, last: Ints) 
     count = np.maximum(last - first - 1, 0)
     row = np.repeat(np.arange(len(first)), count)
     off = np.zeros(len(first))
-    if len(row):
-        node = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + first[row] + 1
-        span = pool.order[last] - pool.order[first]
-        share = (pool.order[node] - pool.order[first[row]]) / np.where(span > 0.0, span, 1.0)[row]
-        np.maximum.at(off, row, off_arc(arcs[row], weight[row], pool.disk[node], share))
+    node = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + first[row] + 1
+    span = pool.order[last] - pool.order[first]
+    share = (pool.order[node] - pool.order[first[row]]) / np.where(span > 0.0, span, 1.0)[row]
+    np.maximum.at(off, row, off_arc(arcs[row], weight[row], pool.disk[node], share))
     return off
 
 

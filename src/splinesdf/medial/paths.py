@@ -18,21 +18,18 @@ def longest_path(edges: Sequence[AxisEdge], count: int) -> list[AxisEdge]:
             around[edge.end].append((edge.start, number, lengths[number]))
     best, path = 0.0, list[tuple[int, int]]()
     ends = [v for v in range(count) if len(around[v]) == 1]
-    # In a tree two searches find it: the farthest end from any, and the farthest from that. With
-    # loops all ends are tried.
-    tree = sum(map(len, around)) // 2 < count
+    # In a tree two searches find it: the farthest end from any, and the farthest from that. In a
+    # part with loops all ends are tried.
     seen: set[int] = set()
     for first in ends:
         if first in seen:
             continue
-        start = first
-        for _ in range(2 if tree else 1):
-            far, reached, way = _farthest(around, start)
-            if far > best:
-                best, path = far, way
-            if tree:
-                seen |= reached
-                start = _last(way, edges, start)
+        far, reached, way = _farthest(around, first)
+        if sum(len(around[v]) for v in reached) // 2 < len(reached):
+            seen |= reached
+            far, _, way = _farthest(around, _last(way, edges))
+        if far > best:
+            best, path = far, way
     result, at = [], -1
     for vertex, number in path:
         edge = edges[number]
@@ -41,9 +38,7 @@ def longest_path(edges: Sequence[AxisEdge], count: int) -> list[AxisEdge]:
     return result
 
 
-def _last(way: list[tuple[int, int]], edges: Sequence[AxisEdge], start: int) -> int:
-    if not way:
-        return start
+def _last(way: list[tuple[int, int]], edges: Sequence[AxisEdge]) -> int:
     vertex, number = way[-1]
     edge = edges[number]
     return edge.end if edge.start == vertex else edge.start
@@ -54,23 +49,19 @@ def _farthest(
 ) -> tuple[float, set[int], list[tuple[int, int]]]:
     """The farthest end by shortest ways; what was reached; vertices and edges of the way there."""
     distance, came = {start: 0.0}, dict[int, tuple[int, int]]()
-    done: set[int] = set()
     queue = [(0.0, start)]
     while queue:
         far, vertex = heapq.heappop(queue)
-        if vertex in done:
-            continue
-        done.add(vertex)
         for other, number, length in around[vertex]:
             if far + length < distance.get(other, float("inf")):
                 distance[other] = far + length
                 came[other] = (vertex, number)
                 heapq.heappush(queue, (far + length, other))
-    ends = [v for v in done if len(around[v]) == 1]
+    ends = [v for v in distance if len(around[v]) == 1 and v != start]
     last = max(ends, key=lambda v: distance[v], default=start)
     way: list[tuple[int, int]] = []
     at = last
     while at != start:
         way.append(came[at])
         at = came[at][0]
-    return distance.get(last, 0.0), done, way[::-1]
+    return distance[last], set(distance), way[::-1]

@@ -75,13 +75,19 @@ class _Cut:
         self.vertices = np.column_stack([graph.points, graph.radius])
 
     def corners(self) -> None:
-        """Cut the branches that end in corners, up to the first junction."""
+        """Cut the branches that end in corners, up to the first junction.
+
+        All at once: one after the other, what is left of a junction's branches would be one with
+        the edge behind it, and go with that or stay for it.
+        """
+        chosen = []
         for vertex in [v for v, kind in enumerate(self.kind) if kind == "corner"]:
-            if len(self.at[vertex]) != 1:
-                continue
-            far = self._other(self.at[vertex][0], vertex)
-            if len(self.at[far]) > 1:
-                self._cut(vertex)
+            if len(self.at[vertex]) == 1:
+                far = self._other(self.at[vertex][0], vertex)
+                if len(self.at[far]) > 1:
+                    chosen.append(vertex)
+        for far in dict.fromkeys([self._cut(vertex) for vertex in chosen]):
+            self._settle(far)
 
     def lower_than(self, height: float) -> None:
         """Cut the lowest branch again and again."""
@@ -92,7 +98,7 @@ class _Cut:
             if low >= height:
                 break
             if vertex not in self.gone and len(self.at[vertex]) == 1 and look == self.looks[vertex]:
-                self._cut(vertex)
+                self._settle(self._cut(vertex))
 
     def _other(self, edge: int, vertex: int) -> int:
         one = self.edges[edge]
@@ -123,7 +129,8 @@ class _Cut:
         reach = np.hypot(*(disks[:, :2] - center).T) + disks[:, 2]
         return max(0.0, float(reach.max()) - radius)
 
-    def _cut(self, vertex: int) -> None:
+    def _cut(self, vertex: int) -> int:
+        """Cut the branch that ends in a vertex; where it began."""
         number = self.at[vertex][0]
         far = self._other(number, vertex)
         self.lost.setdefault(far, []).extend(self._disks(vertex))
@@ -131,6 +138,10 @@ class _Cut:
         self.gone.add(vertex)
         self.at[vertex] = []
         self.at[far].remove(number)
+        return far
+
+    def _settle(self, far: int) -> None:
+        """Make a vertex what it is without the branches that were cut."""
         if len(self.at[far]) == 2:
             self._join(far)
         elif len(self.at[far]) == 1:

@@ -293,8 +293,6 @@ def without_frame(
         line = np.abs(boundary.start[first, side % 2] - frame[side]) <= near
         line &= np.abs(boundary.end[first, side % 2] - frame[side]) <= near
         on_frame |= line
-    if not len(chains.ends):
-        return np.ones(0, dtype=np.bool_), np.arange(len(kinds)), kinds
     element = chains.nodes.element[chains.first[:-1]]
     chosen: Bools = np.asarray(~on_frame[loops.loop[element]].any(axis=1))
     count = len(kinds)

@@ -68,7 +68,8 @@ def _as_quadratics(
     quadratics' ordinates.
     """
     found = []
-    for number in range(_HALVINGS + 1):
+    halvings = 0
+    while len(start):
         rows, middle = [ordinates], ordinates
         while middle.shape[1] > 1:  # de Casteljau's scheme
             middle = 0.5 * (middle[:, :-1] + middle[:, 1:])
@@ -81,10 +82,9 @@ def _as_quadratics(
             inner = share * raised[:, :-1] + (1.0 - share) * raised[:, 1:]
             raised = np.column_stack([first, inner, last])
         done = np.abs(raised - ordinates).max(axis=1) <= allowed
-        done |= number == _HALVINGS
+        done |= halvings == _HALVINGS
+        halvings += 1
         found.append((start[done], quadratic[done]))
-        if done.all():
-            break
         go = ~done
         low = np.stack([row[go, 0] for row in rows], axis=1)
         high = np.stack([row[go, -1] for row in reversed(rows)], axis=1)
