@@ -8,7 +8,7 @@ import pytest
 import splinesdf as ss
 from splinesdf.meshes import Grid, Quadtree
 from splinesdf.spaces.elements import ELEMENTS
-from splinesdf.splines.level_sets import followed
+from splinesdf.splines.level_sets.followed import followed
 from splinesdf.splines.quasi import quasi_interpolate
 from splinesdf.splines.spline import SplineSDF
 from tests import naive_tree
@@ -107,7 +107,7 @@ def test_contours_that_too_many_cells_would_follow_are_refused(
 ) -> None:
     """The mesh has 154 cells, and one round is not enough: nothing that is worse is returned."""
     spline = wavy("cubic")
-    monkeypatch.setattr(followed, ceiling, value)
+    monkeypatch.setitem(followed.__globals__, ceiling, value)
     with pytest.raises(ss.InputError, match="cells can follow, got others: raise their tolerance"):
         spline.contours(0.3, tolerance=1e-3)
 
