@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
-from splinesdf.medial import curves, faces, tracing
+from splinesdf.medial import curves, dividing, faces, tracing
 from splinesdf.medial.faces import Look
 from splinesdf.medial.graph import Chains, Corners
 from splinesdf.medial.tables import Leaves
@@ -28,7 +28,12 @@ def refused(shape: ss.Shape, **options: Any) -> None:
 
 @pytest.mark.parametrize(
     ("module", "name", "value"),
-    [(curves, "_MOST", 20), (curves, "_HALVINGS", 1), (faces, "_ROUNDS", 0)],
+    [
+        (curves, "_MOST", 20),
+        (curves, "_HALVINGS", 1),
+        (faces, "_ROUNDS", 0),
+        (dividing, "_ROUNDS", 0),
+    ],
 )
 def test_a_ceiling_is_no_end_of_the_work(
     module: Any, name: str, value: int, monkeypatch: pytest.MonkeyPatch
