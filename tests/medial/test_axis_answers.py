@@ -12,9 +12,13 @@ import numpy as np
 import pytest
 
 import splinesdf as ss
+from splinesdf.ground.arrays import Floats, Ints
+from splinesdf.medial import tracing
+from splinesdf.medial.chords import Region, seeds
 from splinesdf.medial.edge import AxisEdge
 from splinesdf.medial.paths import longest_path
 from tests.medial.judges import loops_and_parts, off_distance, off_feet
+from tests.named_shapes import gamma
 
 RING = ss.Shape.circle((0, 0), 2) - ss.Shape.circle((0, 0), 1)
 
@@ -174,3 +178,36 @@ def test_what_cannot_be_pruned() -> None:
     left = lacking.pruned(corners=False)
     assert left.kind.count("corner") == 1
     assert len(left.edges) == 1
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 5])
+@pytest.mark.parametrize("name", ["plate", "two holes", "limacon"])
+def test_from_few_chords_the_same_axis_is_found_or_none(
+    name: str, count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Loops without a chord, and chords with the only end on a loop, get more of them.
+
+    Rounds may be too few then, and that is said: what is given as whole is whole.
+    """
+    plate = ss.Shape.rectangle(0, 0, 9, 6)
+    one = plate - ss.Shape.from_points([[2, 2], [3, 2], [3, 4], [2, 4]])
+    shape = {
+        "plate": one,
+        "two holes": one - ss.Shape.circle((6.2, 3.1), 1.3),
+        "limacon": gamma("gamma2"),
+    }[name]
+    usual = ss.medial_axis(shape, 1e-4, prune=0.0)
+
+    def few(region: Region) -> tuple[Ints, Floats]:
+        places, at = seeds(region)
+        return places[:count], at[:count]
+
+    monkeypatch.setattr(tracing, "seeds", few)
+    try:
+        found = ss.medial_axis(shape, 1e-4, prune=0.0)
+    except ss.AxisIncomplete:
+        assert name != "limacon"
+        return
+    assert sorted(found.kind) == sorted(usual.kind)
+    assert len(found.edges) == len(usual.edges)
+    assert found.length == pytest.approx(usual.length, rel=1e-4)

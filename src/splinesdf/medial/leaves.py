@@ -117,7 +117,8 @@ def _roots(values: Floats, noise: Floats) -> tuple[Ints, Floats]:
     """Where polynomials in Bernstein form (k, n) change sign in (0, 1), to rounding."""
     row, low, high = np.arange(values.shape[1]), np.zeros(values.shape[1]), np.ones(values.shape[1])
     rows, places = [np.empty(0, dtype=np.int64)], [np.empty(0)]
-    for depth in range(_HALVINGS + 1):
+    depth = 0
+    while len(row):  # none is left after the last halving, whose changes all count as one
         signs = np.where(np.abs(values) <= noise[row], 0.0, np.sign(values))
         changes = np.zeros(len(row), dtype=np.int64)
         last = np.zeros(len(row))
@@ -130,8 +131,6 @@ def _roots(values: Floats, noise: Floats) -> tuple[Ints, Floats]:
             rows.append(row[single])
             places.append(low[single] + at * (high - low)[single])
         rest = (changes > 1) & ~single
-        if not rest.any():
-            break
         first, second = _halves(values[:, rest])
         middle = 0.5 * (low + high)[rest]
         values = np.concatenate([first, second], axis=1)
@@ -140,6 +139,7 @@ def _roots(values: Floats, noise: Floats) -> tuple[Ints, Floats]:
             np.concatenate([low[rest], middle]),
             np.concatenate([middle, high[rest]]),
         )
+        depth += 1
     return np.concatenate(rows), np.concatenate(places)
 
 
