@@ -36,6 +36,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     ),
     "axis": ("part", "-o", "é.svg", "--tolerance", "0.0123456"),
     "thickness": ("part", "--count", "2"),
+    "vcarve": ("é€.csv", "-o", "é.nc", "--tip", "0.0123456", "--check"),
     "batch": ("write", "é€.csv", "-o", "{name} é.svg", "-j", "1"),
     "texture": ("é€.csv", "-o", "é.png", "--range", "0.1234567"),
     "atlas": ("drawings é", "-o", "é.png", "--size", "12.345678"),
